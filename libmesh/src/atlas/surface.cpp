@@ -63,7 +63,8 @@ std::vector<std::uint32_t> ordered_positions(const Mesh& mesh,
     }
     std::sort(placed.begin(), placed.end(), [&](const Placed& a, const Placed& b) {
         if (a.code != b.code) return a.code < b.code;
-        return compare_values(mesh.positions[a.vertex], mesh.positions[b.vertex]) < 0;
+        const int order = compare_values(mesh.positions[a.vertex], mesh.positions[b.vertex]);
+        return order != 0 ? order < 0 : a.vertex < b.vertex;  // Equal ones are of different parts.
     });
     std::vector<std::uint32_t> number(classes.size(), no_vertex);
     surface.positions.reserve(placed.size());
@@ -311,8 +312,10 @@ void mark_borders(const Mesh& mesh, const AtlasConstraints& constraints,
     const std::vector<std::uint32_t> materials =
         constraints.at_materials ? ranges_of_triangles(mesh) : std::vector<std::uint32_t>{};
     const bool has_seams = constraints.at_seams && !mesh.texcoords.empty();
-    const double min_cosine =
-        constraints.min_hard_angle > 0.0 ? portable::cos(constraints.min_hard_angle) : -2.0;
+    const bool has_densities = !constraints.densities.empty();
+    const double min_cosine = constraints.hard_angle
+                                  ? portable::cos(std::max(*constraints.hard_angle, flat_angle))
+                                  : -2.0;
     const auto texcoord = [&](Corner corner) {
         const std::uint32_t triangle = source[corner / 3];
         const auto i = (corner % 3 + surface.first_corner[triangle]) % 3;
@@ -327,17 +330,38 @@ void mark_borders(const Mesh& mesh, const AtlasConstraints& constraints,
             surface.opposite[a] = surface.opposite[b] = no_corner;
             continue;
         }
+        const auto [low, high] = has_densities ? std::minmax({constraints.densities[source[a / 3]],
+                                                              constraints.densities[source[b / 3]]})
+                                               : std::pair(1.0F, 1.0F);
         surface.is_border[a] =
             (constraints.at_materials && materials[source[a / 3]] != materials[source[b / 3]]) ||
+            high > 2.0F * low ||
             glm::dot(surface.normals[a / 3], surface.normals[b / 3]) < min_cosine;
     }
+}
+
+/// For each vertex, the first one of its part with the same position.
+std::vector<std::uint32_t> position_classes(const Mesh& mesh,
+                                            std::span<const std::uint32_t> first_vertices) {
+    if (first_vertices.size() <= 1) return weld_positions(std::span(mesh.positions));
+    std::vector<std::uint32_t> classes;
+    classes.reserve(mesh.positions.size());
+    for (std::size_t part = 0; part < first_vertices.size(); ++part) {
+        const std::size_t first = first_vertices[part];
+        const std::size_t end =
+            part + 1 < first_vertices.size() ? first_vertices[part + 1] : mesh.positions.size();
+        for (const std::uint32_t vertex :
+             weld_positions(std::span(mesh.positions).subspan(first, end - first)))
+            classes.push_back(static_cast<std::uint32_t>(first) + vertex);
+    }
+    return classes;
 }
 
 }  // namespace
 
 AtlasSurface atlas_surface(const Mesh& mesh, const AtlasConstraints& constraints, Report& report) {
     AtlasSurface surface;
-    const std::vector<std::uint32_t> classes = weld_positions(std::span(mesh.positions));
+    const std::vector<std::uint32_t> classes = position_classes(mesh, constraints.first_vertices);
     // Not std::vector<bool>, whose elements have no address.
     const auto is_used = std::make_unique<bool[]>(mesh.positions.size());
     const auto is_sound = std::make_unique<bool[]>(mesh.triangles.size());

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -54,11 +55,19 @@ struct AtlasSurface {
     }
 };
 
+/// Angles between face normals up to this one, in radians, are due to rounding.
+inline constexpr double flat_angle = 1e-5;
+
 /// The borders of charts that the caller asks for.
 struct AtlasConstraints {
     bool at_materials = false;
-    bool at_seams = false;        ///< Where the texture coordinates of the mesh differ.
-    double min_hard_angle = 0.0;  ///< Radians between face normals; 0: none.
+    bool at_seams = false;  ///< Where the texture coordinates of the mesh differ.
+    /// Radians between face normals: edges with a larger angle are hard, but none up to flat_angle.
+    std::optional<double> hard_angle = std::nullopt;
+    /// The first vertex of each part (UnwrapOptions::first_vertices).
+    std::span<const std::uint32_t> first_vertices{};
+    /// For each triangle of the mesh, or empty: edges between densities whose ratio is above 2.
+    std::span<const float> densities{};
 };
 
 /// \param mesh  valid (mesh.h)

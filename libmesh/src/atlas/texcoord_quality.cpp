@@ -157,7 +157,7 @@ std::optional<double> least_distance(std::span<const Segment> segments) {
 class Measurement {
   public:
     Measurement(const Mesh& mesh, const glm::ivec2& size, Report& report)
-        : size_(size), surface_(atlas_surface(mesh, {false, true, 0.0}, report)) {
+        : size_(size), surface_(atlas_surface(mesh, {.at_seams = true}, report)) {
         corner_texcoords_.reserve(3 * mesh.triangles.size());
         for (const glm::uvec3& triangle : mesh.triangles)
             for (int i = 0; i < 3; ++i)

@@ -12,9 +12,11 @@
 
 #include "atlas/atlas_stats.h"
 #include "atlas/charts.h"
+#include "atlas/existing_charts.h"
 #include "atlas/flat_charts.h"
 #include "atlas/injectivity.h"
 #include "atlas/packing.h"
+#include "atlas/stack.h"
 #include "atlas/surface.h"
 #include "progress_stage.h"
 
@@ -31,7 +33,7 @@ constexpr double expected_use = 0.65;
 /// charts.
 constexpr double max_overlength = 1.25;
 
-void check(const UnwrapOptions& options) {
+void check(const UnwrapOptions& options, const Mesh& mesh) {
     const auto refuse = [](const std::string& what, double value, const std::string& range) {
         throw InvalidInput(fmt::format("{} is {}, but must be {}", what, value, range));
     };
@@ -48,9 +50,20 @@ void check(const UnwrapOptions& options) {
     if (options.texels_per_unit &&
         !(*options.texels_per_unit > 0.0 && std::isfinite(*options.texels_per_unit)))
         refuse("the density", *options.texels_per_unit, "finite and above 0 texels per unit");
+    if (!options.densities.empty() && options.densities.size() != mesh.triangles.size())
+        throw InvalidInput(fmt::format("there are {} densities for {} triangles",
+                                       options.densities.size(), mesh.triangles.size()));
+    for (const float each : options.densities)
+        if (!(each > 0.0F && std::isfinite(each)))
+            refuse("a relative density", static_cast<double>(each), "finite and above 0");
+    const std::vector<std::uint32_t>& first = options.first_vertices;
+    if (first.empty()) return;
+    if (first.front() != 0 || first.back() > mesh.positions.size() ||
+        !std::is_sorted(first.begin(), first.end()))
+        throw InvalidInput("the first vertices of the parts must ascend from 0");
 }
 
-/// A chart on the lattice of the map; y points up.
+/// A chart on the lattice of the map; y points up. Its points may be in one place.
 std::vector<LatticePoint> lattice_points(const FlatChart& chart, const Placement& placement,
                                          double texels_per_unit, const glm::ivec2& size) {
     const glm::dvec2 steps = lattice_size / glm::dvec2(size);
@@ -61,14 +74,16 @@ std::vector<LatticePoint> lattice_points(const FlatChart& chart, const Placement
         points.emplace_back(static_cast<int>(std::clamp(p.x, 0.0, lattice_size)),
                             static_cast<int>(std::clamp(p.y, 0.0, lattice_size)));
     }
-    // A single triangle may be so small or thin that its corners round to a line.
-    if (chart.mesh.faces.size() == 1 && orientation(points[0], points[1], points[2]) <= 0) {
-        const glm::uvec3& v = chart.mesh.vertices[0];
-        const LatticePoint first = points[v.x];
-        points[v.y] = first + LatticePoint(1, 0);
-        points[v.z] = first + LatticePoint(0, 1);
-    }
     return points;
+}
+
+/// A single triangle may be so small or thin that its corners round to a line.
+void widen_single_triangle(const FlatChart& chart, std::vector<LatticePoint>& points) {
+    if (chart.mesh.faces.size() != 1 || orientation(points[0], points[1], points[2]) > 0) return;
+    const glm::uvec3& v = chart.mesh.vertices[0];
+    const LatticePoint first = points[v.x];
+    points[v.y] = first + LatticePoint(1, 0);
+    points[v.z] = first + LatticePoint(0, 1);
 }
 
 /// Charts in their places on the lattice.
@@ -78,10 +93,37 @@ struct Atlas {
     double texels_per_unit = 0.0;  ///< Of the surface.
 };
 
+/// Scales charts by the mean density of their triangles.
+class DensityScale {
+  public:
+    /// \param densities  of the triangles of the mesh; empty: equal
+    DensityScale(const AtlasSurface& surface, std::span<const float> densities)
+        : surface_(surface) {
+        if (densities.empty()) return;
+        for (const std::uint32_t triangle : triangles_of_faces(surface))
+            density_.push_back(static_cast<double>(densities[triangle]));
+    }
+    void apply(FlatChart& chart) const {
+        if (density_.empty()) return;
+        double sum = 0.0;
+        for (const std::uint32_t face : chart.mesh.faces)
+            sum += surface_.areas[face] * density_[face];
+        const double scale = sum / chart.area;
+        for (glm::dvec2& each : chart.coordinates)
+            each *= scale;
+        chart.size *= scale;
+        chart.area *= scale * scale;
+    }
+
+  private:
+    const AtlasSurface& surface_;
+    std::vector<double> density_;  ///< Of each face.
+};
+
 /// Packs charts, and divides those that overlap themselves once they are rounded at their place,
 /// until there is none.
 Atlas packed_atlas(const AtlasSurface& surface, std::vector<FlatChart> charts,
-                   ChartMembers& members, const FlatnessLimits& limits,
+                   ChartMembers& members, const FlatnessLimits& limits, const DensityScale& density,
                    const PackingOptions& options) {
     Atlas atlas;
     for (;;) {
@@ -92,14 +134,17 @@ Atlas packed_atlas(const AtlasSurface& surface, std::vector<FlatChart> charts,
         for (std::size_t i = 0; i < charts.size(); ++i) {
             atlas.points.push_back(lattice_points(charts[i], packing.placements[i],
                                                   packing.texels_per_unit, options.size));
+            widen_single_triangle(charts[i], atlas.points[i]);
             const auto problem = overlap_in(charts[i].mesh, atlas.points[i]);
             if (!problem) {
                 next.push_back(charts[i]);
                 continue;
             }
             is_sound = false;
-            for (FlatChart& part : divided_further(surface, members, charts[i], *problem, limits))
+            for (FlatChart& part : divided_further(surface, members, charts[i], *problem, limits)) {
+                density.apply(part);
                 next.push_back(std::move(part));
+            }
         }
         if (is_sound) {
             atlas.charts = std::move(charts);
@@ -108,6 +153,27 @@ Atlas packed_atlas(const AtlasSurface& surface, std::vector<FlatChart> charts,
         }
         charts = std::move(next);
     }
+}
+
+/// Packs existing charts, and reports those that overlap themselves.
+Atlas repacked_atlas(std::vector<FlatChart> charts, const PackingOptions& options, Report& report) {
+    Atlas atlas;
+    const Packing packing = packed(charts, options);
+    for (std::size_t i = 0; i < charts.size(); ++i) {
+        std::vector<LatticePoint> points =
+            lattice_points(charts[i], packing.placements[i], packing.texels_per_unit, options.size);
+        atlas.points.push_back(points);
+        // Mirrored charts have their own finding.
+        const auto reflect = [](LatticePoint p) { return LatticePoint(-p.x, p.y); };
+        if (!overlap_in(charts[i].mesh, points)) continue;
+        std::transform(points.begin(), points.end(), points.begin(), reflect);
+        if (overlap_in(charts[i].mesh, points))
+            report.add("chart with overlapping or inverted triangles", "chart", i,
+                       "keeps its shape");
+    }
+    atlas.charts = std::move(charts);
+    atlas.texels_per_unit = packing.texels_per_unit;
+    return atlas;
 }
 
 /// Texture coordinates from lattice coordinates: v points down. The result is exact.
@@ -148,17 +214,31 @@ FaceCharts fill_corners(const AtlasSurface& surface, const Atlas& atlas, Unwrapp
 }  // namespace
 
 Unwrapped unwrap(const Mesh& mesh, const UnwrapOptions& options, Report& report) {
-    check(options);
     validate(mesh);
+    check(options, mesh);
     const ExecutionScope scope(options.execution);
     const ProgressStage stage("unwrapping");
+    if (options.stack) return stacked(mesh, options, report);
     Unwrapped result;
     result.corner_texcoords.assign(3 * mesh.triangles.size(), glm::vec2(0.0F));
     result.chart.assign(mesh.triangles.size(), std::nullopt);
-    const AtlasSurface surface = atlas_surface(
-        mesh, {options.split_materials, options.keep_seams, options.split_hard.value_or(0.0)},
-        report);
+    const AtlasSurface surface =
+        atlas_surface(mesh,
+                      {options.split_materials, options.keep_seams || options.repack,
+                       options.split_hard, options.first_vertices, options.densities},
+                      report);
     if (surface.faces.empty()) return result;
+    PackingOptions packing{options.size, options.padding, options.alignment, std::nullopt};
+    if (options.repack) {
+        if (options.texels_per_unit)
+            packing.texels_per_unit = *options.texels_per_unit * surface.unit;
+        const Atlas atlas =
+            repacked_atlas(existing_charts(surface, mesh, options.size, options.unmirror, report),
+                           packing, report);
+        const FaceCharts face_charts = fill_corners(surface, atlas, result);
+        result.stats = stats_of(surface, result.corner_texcoords, face_charts, options.size);
+        return result;
+    }
     Segmentation segmentation = divided(surface, ChartLimits{});
     smooth_borders(surface, segmentation);
 
@@ -178,9 +258,11 @@ Unwrapped unwrap(const Mesh& mesh, const UnwrapOptions& options, Report& report)
     limits.max_side = max_overlength * std::max(size.x, size.y) / texels_per_unit;
     ChartMembers members(segmentation.chart);
     std::vector<FlatChart> charts = flat_charts(surface, segmentation, members, limits);
-    PackingOptions packing{options.size, options.padding, options.alignment, std::nullopt};
     if (options.texels_per_unit) packing.texels_per_unit = texels_per_unit;
-    const Atlas atlas = packed_atlas(surface, std::move(charts), members, limits, packing);
+    const DensityScale density(surface, options.densities);
+    for (FlatChart& chart : charts)
+        density.apply(chart);
+    const Atlas atlas = packed_atlas(surface, std::move(charts), members, limits, density, packing);
     const FaceCharts face_charts = fill_corners(surface, atlas, result);
     result.stats = stats_of(surface, result.corner_texcoords, face_charts, options.size);
     return result;

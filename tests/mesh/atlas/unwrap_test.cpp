@@ -273,6 +273,149 @@ TEST(Unwrap, DividesChartsWhereThatIsRequested) {
         EXPECT_EQ(framed.mesh.positions[v], sphere.positions[framed.source_vertex[v]]);
 }
 
+TEST(Unwrap, RepacksItsOwnCharts) {
+    Mesh sphere = make_sphere(24, 12);
+    UnwrapOptions options;
+    options.size = {512, 256};
+    const Unwrapped first = unwrap(sphere, options);
+    sphere = with_texcoords(sphere, first).mesh;
+    options.repack = true;
+    options.padding = 12;
+    Report report;
+    const Unwrapped second = unwrap(sphere, options, report);
+    EXPECT_EQ(report.count("mirrored chart"), 0U);
+    EXPECT_EQ(report.count("chart with overlapping or inverted triangles"), 0U);
+    EXPECT_EQ(broken_promise(second), "");
+    EXPECT_EQ(second.stats.charts, first.stats.charts);
+    // Rounding to the lattice changes shapes by less than a thousandth of a texel.
+    EXPECT_NEAR(second.stats.stretch, first.stats.stretch, 1e-3);
+    EXPECT_GE(distances_of(second, {512, 256}).between, 12.0 - 1e-3);
+}
+
+/// Appends a copy of a mesh, transformed.
+void append_copy(Mesh& mesh, const Mesh& part, const glm::mat3& rotation, const glm::vec3& shift) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const glm::vec3& position : part.positions)
+        mesh.positions.push_back(rotation * position + shift);
+    for (const glm::uvec3& triangle : part.triangles)
+        mesh.triangles.push_back(triangle + first);
+}
+
+TEST(Unwrap, StacksEqualParts) {
+    // A part without symmetry.
+    Mesh part = make_sphere(9, 6);
+    for (glm::vec3& p : part.positions)
+        p += glm::vec3(0.3F * p.y * p.y, 0.2F * p.x * p.z, 0.1F * p.x);
+    const glm::mat3 identity(1.0F);
+    const glm::mat3 rotation(0.36F, 0.48F, -0.8F, -0.8F, 0.6F, 0.0F, 0.48F, 0.64F, 0.6F);
+    const glm::mat3 mirror(-1, 0, 0, 0, 1, 0, 0, 0, 1);
+    Mesh mesh;
+    append_copy(mesh, part, identity, {});
+    append_copy(mesh, part, rotation, {5, 1, 0});
+    append_copy(mesh, part, 1.01F * identity, {0, 5, 0});
+    const auto before_mirrored = static_cast<std::uint32_t>(mesh.triangles.size());
+    append_copy(mesh, part, mirror, {0, 0, 5});
+    for (std::size_t t = before_mirrored; t < mesh.triangles.size(); ++t)
+        std::swap(mesh.triangles[t].y, mesh.triangles[t].z);
+    UnwrapOptions options;
+    options.size = {256, 256};
+    options.stack = true;
+    const Unwrapped unwrapped = unwrap(mesh, options);
+    EXPECT_EQ(unwrapped.stats.stacked_parts, 1U) << "others have another size or are mirrored";
+    const std::size_t corners = 3 * part.triangles.size();
+    const auto coordinates = [&](std::size_t which) {
+        const auto begin =
+            unwrapped.corner_texcoords.begin() + static_cast<std::ptrdiff_t>(which * corners);
+        return std::vector(begin, begin + static_cast<std::ptrdiff_t>(corners));
+    };
+    EXPECT_EQ(coordinates(0), coordinates(1));
+    EXPECT_EQ(unwrapped.chart[0], unwrapped.chart[part.triangles.size()]);
+    EXPECT_NE(coordinates(0), coordinates(2));
+    EXPECT_NE(coordinates(0), coordinates(3));
+    EXPECT_EQ(broken_promise(unwrapped), "");
+
+    mesh.material_ranges = {{0, static_cast<std::uint32_t>(part.triangles.size()), 0U},
+                            {static_cast<std::uint32_t>(part.triangles.size()),
+                             static_cast<std::uint32_t>(3 * part.triangles.size()), 1U}};
+    EXPECT_EQ(unwrap(mesh, options).stats.stacked_parts, 0U) << "the materials differ";
+}
+
+TEST(Unwrap, StacksManyPartsInLinearTime) {
+    // Symmetric parts, which match in several ways, and many that are nearly equal.
+    Mesh mesh;
+    const Mesh sphere = make_sphere(16, 8);
+    for (int i = 0; i < 60; ++i)
+        append_copy(mesh, sphere, glm::mat3(i < 40 ? 1.0F : 1.0F + 1e-3F * static_cast<float>(i)),
+                    glm::vec3(3 * (i % 15), 3 * (i / 15), 0));
+    UnwrapOptions options;
+    options.size = {256, 256};
+    options.stack = true;
+    EXPECT_EQ(unwrap(mesh, options).stats.stacked_parts, 39U);
+}
+
+TEST(Unwrap, FollowsDensities) {
+    Mesh square = test::square();
+    square.texcoords = {};
+    UnwrapOptions options;
+    options.densities = {1.0F, 3.0F};
+    const Unwrapped divided = unwrap(square, options);
+    EXPECT_EQ(divided.stats.charts, 2U) << "the densities differ too much for one chart";
+    EXPECT_EQ(broken_promise(divided), "");
+    const auto area = [&](std::size_t triangle) {
+        const glm::vec2* const uv = &divided.corner_texcoords[3 * triangle];
+        return static_cast<double>(area_of(point_of(uv[0]), point_of(uv[1]), point_of(uv[2])));
+    };
+    EXPECT_NEAR(area(1) / area(0), 9.0, 0.01);
+    options.densities = {1.0F, 1.9F};
+    EXPECT_EQ(unwrap(square, options).stats.charts, 1U);
+    options.densities = {1.0F};
+    EXPECT_EQ(message_of<InvalidInput>([&] { unwrap(square, options); }),
+              "there are 1 densities for 2 triangles");
+    options.densities = {1.0F, 0.0F};
+    EXPECT_EQ(message_of<InvalidInput>([&] { unwrap(square, options); }),
+              "a relative density is 0, but must be finite and above 0");
+}
+
+TEST(Unwrap, KeepsPartsApart) {
+    // Two cubes in the same place. As one part, each triangle of the second one is repeated.
+    const Mesh cube = make_cube();
+    Mesh two = cube;
+    const auto count = static_cast<std::uint32_t>(cube.positions.size());
+    two.positions.insert(two.positions.end(), cube.positions.begin(), cube.positions.end());
+    for (const glm::uvec3& triangle : cube.triangles)
+        two.triangles.push_back(triangle + count);
+    two.normals = {};
+    two.tangents = {};
+    two.texcoords = {};
+    UnwrapOptions options;
+    options.size = {256, 256};
+    const AtlasStats single = unwrap(cube, options).stats;
+    options.first_vertices = {0, count};
+    Report report;
+    const Unwrapped apart = unwrap(two, options, report);
+    EXPECT_TRUE(report.empty());
+    EXPECT_EQ(apart.stats.charts, 2 * single.charts);
+    EXPECT_EQ(broken_promise(apart), "");
+    EXPECT_DOUBLE_EQ(apart.stats.area, 2.0 * single.area);
+    options.first_vertices = {};
+    unwrap(two, options, report);
+    EXPECT_EQ(report.count("repeated triangle"), cube.triangles.size());
+}
+
+TEST(Unwrap, SplitsAtEveryEdgeThatIsNotFlat) {
+    Mesh sphere = make_sphere(8, 4);
+    sphere.texcoords = {};
+    UnwrapOptions options;
+    options.size = {256, 256};
+    options.split_hard = 0.0;
+    // Quads between the triangles of the caps.
+    EXPECT_EQ(unwrap(sphere, options).stats.charts, 8U * 4U);
+    Mesh square = test::square();
+    for (glm::vec3& p : square.positions)
+        p = {0.1F * p.x, 0.7F * p.x + 0.3F * p.y, 0.9F * p.y};  // Rounded, so not exactly flat.
+    EXPECT_EQ(unwrap(square, options).stats.charts, 1U);
+}
+
 TEST(Unwrap, RefusesOptionsOutOfRange) {
     const Mesh square = test::square();
     const auto message = [&](const UnwrapOptions& options) {
@@ -291,6 +434,15 @@ TEST(Unwrap, RefusesOptionsOutOfRange) {
     options.size = {16, 16};
     options.padding = 16;
     EXPECT_EQ(message(options), "the padding leaves no room in the map");
+    options = {};
+    options.first_vertices = {0, 5};
+    EXPECT_EQ(message(options), "the first vertices of the parts must ascend from 0");
+    options = {};
+    options.repack = true;
+    Mesh plain = square;
+    plain.texcoords = {};
+    EXPECT_EQ(message_of<InvalidInput>([&] { unwrap(plain, options); }),
+              "there are no texture coordinates to repack");
     Unwrapped other;
     EXPECT_EQ(message_of<InvalidInput>([&] { with_texcoords(square, other); }),
               "there are 0 texture coordinates for 2 triangles");

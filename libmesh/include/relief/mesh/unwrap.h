@@ -30,18 +30,38 @@ struct UnwrapOptions {
     bool keep_seams = false;       ///< The seams of existing texture coordinates stay seams.
     bool split_materials = false;  ///< No chart has triangles of two materials.
     /// Radians, 0 to pi: edges with a larger angle between their triangles are between two charts
-    /// where that is possible. Absent: none.
+    /// where that is possible. 0: all edges that are not flat (above 1e-5, which rounding may
+    /// cause). Absent: none.
     std::optional<double> split_hard = std::nullopt;
+    /// Keeps the charts of the existing texture coordinates, with their shapes and relative sizes
+    /// in a map of these proportions, and only packs them anew. They are not tested: what overlaps
+    /// or is inverted within a chart stays so, which is reported. Limits of charts have no effect.
+    bool repack = false;
+    /// Reflects mirrored charts, with `repack`.
+    bool unmirror = false;
+    /// Parts (triangles that are joined across edges) that are equal up to a rotation and a shift,
+    /// to 1e-4 of their longest edge, and in materials and densities have the same texture
+    /// coordinates. Mirrored parts are not equal.
+    bool stack = false;
     /// Charts share no square block of this many texels, 1 to 64: 4 for BC compression.
     int alignment = 1;
     /// Texels per unit of the mesh, above 0; absent: as many as fit into the map.
     std::optional<double> texels_per_unit = std::nullopt;
+    /// The relative density of texels of each triangle, above 0; empty: equal. A chart has the mean
+    /// of its area, and no chart has neighbors whose densities differ by more than a factor of 2.
+    /// `texels_per_unit` is that of density 1. Without effect with `repack`.
+    std::vector<float> densities{};
+    /// The first vertex of each part of the mesh, ascending from 0: parts are not joined, even if
+    /// they have equal positions. Empty: the mesh is one part.
+    std::vector<std::uint32_t> first_vertices{};
     ExecutionOptions execution;
 };
 
 /// The quality of texture coordinates. Shares are of the area on the surface.
 struct AtlasStats {
     std::size_t charts = 0;
+    /// Parts that share the texels of an equal one, with `stack`: no other value counts them.
+    std::size_t stacked_parts = 0;
     std::size_t small_charts = 0;  ///< Charts below 64 texels.
     double used = 0.0;             ///< The share of the map that charts cover.
     double texels_per_unit = 0.0;  ///< The mean: the root of the ratio of both areas.
@@ -69,15 +89,15 @@ struct Unwrapped {
 /// Computes texture coordinates for all triangles.
 ///
 /// \param mesh  valid (mesh.h); vertices with equal positions count as one. Existing texture
-///         coordinates matter only with `keep_seams`
+///         coordinates matter only with `keep_seams` and `repack`
 /// \param report  counts triangles without area, non-finite and repeated ones, and edges of more
-///         than two triangles
-/// \return no two triangles overlap, none is mirrored, and the charts keep the padding. That is
+///         than two triangles; with `repack` also mirrored charts and those with overlaps
+/// \return no two triangles overlap (except those of equal parts with `stack`), none is mirrored,
+/// and the charts keep the padding. That is
 ///         tested with integers: coordinates are multiples of 2^-24, which floats hold exactly.
 ///         Repeated triangles have the coordinates of the first one
-/// \throws InvalidInput if the mesh is not valid, an option is out of range, or the charts do not
-/// fit
-///         into the map with the requested padding or density
+/// \throws InvalidInput if the mesh is not valid, an option is out of range, the charts do not fit
+///         into the map with the requested padding or density, or there is nothing to repack
 ///
 /// Every mesh has a result. Non-manifold edges are cut, except for their flattest pairs of
 /// triangles. Charts that cannot be flattened within the limits are divided, if necessary down to
