@@ -387,6 +387,31 @@ class GltfDocument {
     std::size_t set_frames(GltfPrimitiveId id, const FramedMesh& framed,
                            const FrameOptions& options, Report& report = IgnoredReport());
 
+    /// Replaces a texture coordinate set of a primitive, or adds it. If vertices were split,
+    /// indices are rewritten, and all other attributes and morph targets follow, in their own
+    /// types.
+    ///
+    /// The tangents stay, also if they belong to this set. Missing sets below it are (0,0), because
+    /// glTF numbers sets without gaps.
+    /// \param framed  the triangles of mesh(id) with their texture coordinates; its vertices are
+    ///         copies of the primitive's by `source_vertex`
+    /// \param report  counts missing lower sets, and morph targets that displaced this set: they
+    ///         no longer do
+    /// \throws InvalidInput if `framed` does not belong to this primitive, or as mesh()
+    void set_texcoords(GltfPrimitiveId id, int set, const FramedMesh& framed,
+                       Report& report = IgnoredReport());
+
+    /// Returns the materials that a primitive has, also by variants, and that look up textures at a
+    /// texture coordinate set, ascending.
+    /// \throws InvalidInput if there is no such primitive
+    [[nodiscard]] std::vector<std::size_t> materials_with_textures_at(GltfPrimitiveId id,
+                                                                      int set) const;
+
+    /// Removes all textures of a material that are looked up at a texture coordinate set. Its
+    /// factors stay. Textures and images that nothing else uses are not written.
+    /// \throws InvalidInput if there is no such material, or if an animation changes such a texture
+    void remove_textures_at(std::size_t material, int set);
+
     /// Replaces the mesh of a primitive, as floats: positions, normals, tangents, texture
     /// coordinates (set 0) and colors. The material stays.
     /// \throws InvalidInput if the primitive has attributes that a mesh cannot hold (morph targets,

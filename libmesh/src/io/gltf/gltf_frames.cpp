@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Replaces normals, tangents and positions of a glTF primitive, and normals and tangents of its
-// morph targets, in object space.
+// Replaces normals, tangents, positions and texture coordinates of a glTF primitive, and normals
+// and tangents of its morph targets, in object space.
 //
 // Changed values become new accessors, so that other users of the old ones are not affected. The
 // old ones are retired: the writer leaves them out. Unchanged values keep their accessor, or at
@@ -38,10 +38,14 @@ class FrameReplacement {
   public:
     FrameReplacement(GltfContents& contents, GltfPrimitiveId id, const FramedMesh& framed);
     void run();
+    /// Replaces only texture coordinates.
+    void run(int texcoord_set, Report& report);
 
   private:
     Json& primitive() { return contents_.root["meshes"][id_.mesh]["primitives"][id_.primitive]; }
     void check() const;
+    void remove_displacements(const std::string& attribute, Report& report);
+    void add_zeros(const std::string& attribute);
     std::size_t carried(std::size_t accessor);
     template <typename Vector>
     void replace(const char* name, const std::vector<Vector>& values);
@@ -272,6 +276,43 @@ void FrameReplacement::run() {
     replace("TANGENT", framed_.mesh.tangents);
     if (!same_vertices_) carry_all();
     if (!same_triangles_ || !same_vertices_) replace_indices();
+    drop_draco();
+}
+
+void FrameReplacement::remove_displacements(const std::string& attribute, Report& report) {
+    if (!primitive().contains("targets")) return;
+    for (std::size_t i = 0; i < primitive()["targets"].size(); ++i) {
+        Json& target = primitive()["targets"][i];
+        const auto accessor = index_in(target, attribute.c_str());
+        if (!accessor) continue;
+        retire(*accessor);
+        target.erase(attribute);
+        report.add("displacements of replaced texture coordinates", "morph target", i,
+                   "are removed");
+    }
+}
+
+/// Adds the coordinates (0, 0) of all vertices, which take no bytes.
+void FrameReplacement::add_zeros(const std::string& attribute) {
+    Json& accessors = contents_.root["accessors"];
+    accessors.push_back({{"componentType", gltf_code::float32},
+                         {"count", framed_.mesh.positions.size()},
+                         {"type", "VEC2"}});
+    primitive()["attributes"][attribute] = accessors.size() - 1;
+}
+
+void FrameReplacement::run(int texcoord_set, Report& report) {
+    const auto name = [](int set) { return fmt::format("TEXCOORD_{}", set); };
+    remove_displacements(name(texcoord_set), report);
+    replace(name(texcoord_set).c_str(), framed_.mesh.texcoords);
+    if (!same_vertices_) carry_all();
+    if (!same_triangles_ || !same_vertices_) replace_indices();
+    for (int set = 0; set < texcoord_set; ++set) {
+        if (primitive()["attributes"].contains(name(set))) continue;
+        add_zeros(name(set));
+        report.add("missing texture coordinate set below the new one", "set",
+                   static_cast<std::size_t>(set), "is (0, 0), because glTF numbers them all");
+    }
     drop_draco();
 }
 
@@ -510,6 +551,14 @@ std::size_t MorphReplacement::run() {
 
 void GltfDocument::set_frames(GltfPrimitiveId id, const FramedMesh& framed) {
     replace_frames(contents_->data, id, framed);
+}
+
+void GltfDocument::set_texcoords(GltfPrimitiveId id, int set, const FramedMesh& framed,
+                                 Report& report) {
+    if (framed.mesh.texcoords.size() != framed.mesh.positions.size())
+        fail_gltf("{}: there are {} texture coordinates for {} vertices", describe(id),
+                  framed.mesh.texcoords.size(), framed.mesh.positions.size());
+    FrameReplacement(contents_->data, id, framed).run(set, report);
 }
 
 std::size_t GltfDocument::set_frames(GltfPrimitiveId id, const FramedMesh& framed,

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textures of materials: an image entry is added, a texture entry is changed or added, and the old
-// image is retired. Samplers, texture coordinate sets and transforms stay.
+// image is retired. Samplers, texture coordinate sets and transforms stay. Textures of a set are
+// removed.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -189,7 +191,88 @@ void report_slot(const Json& material, std::size_t index, TextureSlot slot, cons
         add("map on another texture coordinate set than the first", "keeps that set");
 }
 
+/// Calls `visit` for each texture below `json` that is looked up at a set, with its owner and key.
+template <typename Visitor>
+void visit_textures_at(Json& json, std::size_t set, const Visitor& visit) {
+    if (!json.is_object()) return;
+    std::vector<std::string> keys;
+    for (auto& [key, value] : json.items()) {
+        const bool is_texture = value.is_object() && key.ends_with("exture");
+        if (is_texture && find(value, "index") != nullptr && texcoord_set_of(value) == set)
+            keys.push_back(key);
+        else
+            visit_textures_at(value, set, visit);
+    }
+    for (const std::string& key : keys)
+        visit(json, key);
+}
+
+/// \throws InvalidInput if an animation changes a texture of the material
+void refuse_animated(const Json& root, std::size_t material, const std::string& texture) {
+    const std::string begin = fmt::format("/materials/{}/", material);
+    for (const Json& animation : array_in(root, "animations")) {
+        for (const Json& channel : array_in(animation, "channels")) {
+            const Json* const target = find(channel, "target");
+            if (target == nullptr) continue;
+            const Json* const extension = find(*target, "extensions", "KHR_animation_pointer");
+            if (extension == nullptr) continue;
+            const std::string pointer = text_in(*extension, "pointer");
+            if (pointer.starts_with(begin) && pointer.find("/" + texture + "/") != pointer.npos)
+                fail_gltf("material {}: its {} cannot be removed, because an animation changes it",
+                          material, texture);
+        }
+    }
+}
+
 }  // namespace
+
+std::vector<std::size_t> GltfDocument::materials_with_textures_at(GltfPrimitiveId id,
+                                                                  int set) const {
+    const Json& primitive = primitive_json(contents_->data, id);
+    std::set<std::size_t> candidates;
+    if (const auto material = index_in(primitive, "material")) candidates.insert(*material);
+    if (const Json* variants = find(primitive, "extensions", "KHR_materials_variants")) {
+        for (const Json& mapping : array_in(*variants, "mappings"))
+            if (const auto material = index_in(mapping, "material")) candidates.insert(*material);
+    }
+    std::vector<std::size_t> result;
+    for (const std::size_t material : candidates) {
+        Json json = contents_->data.root["materials"][material];
+        bool is_found = false;
+        visit_textures_at(json, static_cast<std::size_t>(set),
+                          [&](Json&, const std::string&) { is_found = true; });
+        if (is_found) result.push_back(material);
+    }
+    return result;
+}
+
+void GltfDocument::remove_textures_at(std::size_t material, int set) {
+    GltfContents& contents = contents_->data;
+    Json& root = contents.root;
+    const std::size_t count = array_in(root, "materials").size();
+    if (material >= count)
+        fail_gltf("material {} does not exist, there are only {}", material, count);
+    Json& json = root["materials"][material];
+    const auto place = static_cast<std::size_t>(set);
+    visit_textures_at(json, place, [&](const Json&, const std::string& key) {
+        refuse_animated(root, material, key);
+    });
+    std::vector<std::size_t> removed;
+    visit_textures_at(json, place, [&](Json& owner, const std::string& key) {
+        removed.push_back(size_in(owner[key], "index"));
+        owner.erase(key);
+    });
+    if (!has_hidden_uses(root)) {
+        for (const std::size_t index : removed) {
+            if (texture_uses(root, index) > 0) continue;
+            retire_images(contents, root["textures"][index]);
+            root["textures"][index].erase("source");
+        }
+    }
+    for (const char* extension : source_extensions)
+        remove_unused_extension(root, extension);
+    remove_unused_extension(root, "KHR_texture_transform");
+}
 
 std::size_t GltfDocument::add_material(const std::string& name) {
     Json& root = contents_->data.root;
