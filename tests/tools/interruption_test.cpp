@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <utility>
@@ -67,6 +68,44 @@ TEST(Interruption, OfABakeLeavesNoMap) {
             place / ".", [&] { return is_writing(place / "out"); }, SIGINT);
         EXPECT_EQ(result.exit_code, 128 + SIGINT) << result.error;
         EXPECT_EQ(place.outputs(), "");
+    }
+}
+
+/// Writes a rough sheet of cells x cells squares, which takes a while to unwrap.
+void write_rough_sheet(const std::filesystem::path& file, int cells) {
+    std::ofstream stream(file);
+    std::uint32_t state = 7;
+    for (int y = 0; y <= cells; ++y) {
+        for (int x = 0; x <= cells; ++x) {
+            state = state * 1664525U + 1013904223U;
+            stream << "v " << x << ' ' << y << ' ' << static_cast<double>(state >> 16) * 3e-5
+                   << '\n';
+        }
+    }
+    for (int y = 0; y < cells; ++y) {
+        for (int x = 0; x < cells; ++x) {
+            const int a = y * (cells + 1) + x + 1;
+            stream << "f " << a << ' ' << a + 1 << ' ' << a + cells + 2 << ' ' << a + cells + 1
+                   << '\n';
+        }
+    }
+}
+
+TEST(Interruption, OfUnwrappingLeavesTheOldFile) {
+    using Clock = std::chrono::steady_clock;
+    const Workplace place;
+    write_rough_sheet(place / "sheet.obj", 300);
+    place.write("out/a.glb", "old");
+    // While the sheet is read, divided and packed, roughly.
+    for (const int milliseconds : {10, 250, 500}) {
+        const Clock::time_point start = Clock::now();
+        const ProgramResult result = run_program_until(
+            {"relief-mesh", "unwrap", "sheet.obj", "out/a.glb", "--threads", "1"}, place / ".",
+            [&] { return Clock::now() - start > std::chrono::milliseconds(milliseconds); }, SIGINT);
+        EXPECT_EQ(result.exit_code, 128 + SIGINT) << result.error;
+        EXPECT_EQ(result.error, "");
+        EXPECT_EQ(place.outputs(), "a.glb");
+        EXPECT_EQ(place.read("out/a.glb"), "old");
     }
 }
 

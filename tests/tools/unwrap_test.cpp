@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -56,17 +57,80 @@ TEST(UnwrapCommand, WritesTheSameBytesForAnyNumberOfThreads) {
     EXPECT_EQ(workplace.run("relief-mesh check out/a.glb").exit_code, 0);
 }
 
+/// Returns twice the signed area of a triangle in the map, with v upwards.
+float signed_area(const Mesh& mesh, std::size_t triangle) {
+    const glm::uvec3& t = mesh.triangles[triangle];
+    const glm::vec2 a = mesh.texcoords[t.y] - mesh.texcoords[t.x];
+    const glm::vec2 b = mesh.texcoords[t.z] - mesh.texcoords[t.x];
+    return a.y * b.x - a.x * b.y;
+}
+
+TEST(UnwrapCommand, RepacksExistingCharts) {
+    const Workplace workplace;
+    // The second square covers a quarter of the first one in the map, and is mirrored.
+    workplace.write("out/a.obj",
+                    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\nv 6 1 0\nv 5 1 0\n"
+                    "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt .5 0\nvt 0 0\nvt 0 .5\nvt .5 .5\n"
+                    "f 1/1 2/2 3/3 4/4\nf 5/5 6/6 7/7 8/8\n");
+    const std::string command = "relief-mesh unwrap out/a.obj out/b.obj --size 256 --repack ";
+    ProgramResult result = workplace.run(command + "--report out/r.json");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("1 x mirrored chart (chart 1): stays mirrored"));
+    const json atlas = json::parse(workplace.read("out/r.json"))["atlas"];
+    EXPECT_EQ(atlas["charts"], 2);
+    const auto written = [&] { return read_mesh(workplace / "out/b.obj").mesh; };
+    Mesh mesh = written();
+    EXPECT_NEAR(signed_area(mesh, 2), -0.25F * signed_area(mesh, 0), 1e-4F);
+    EXPECT_NEAR(atlas["used"].get<double>(), 1.25 * static_cast<double>(signed_area(mesh, 0)),
+                1e-3);
+    result = workplace.run(command + "--fix-mirrored --strict");
+    EXPECT_THAT(result.out, HasSubstr("1 x mirrored chart (chart 1): is reflected"));
+    EXPECT_EQ(result.exit_code, 3);
+    mesh = written();
+    EXPECT_NEAR(signed_area(mesh, 2), 0.25F * signed_area(mesh, 0), 1e-4F);
+    EXPECT_EQ(workplace.run("relief-mesh check out/b.obj --for-baking").exit_code, 0);
+}
+
+TEST(UnwrapCommand, ReportsRepackedChartsThatOverlapThemselves) {
+    const Workplace workplace;
+    // The second triangle lies on the first one.
+    workplace.write("out/a.obj",
+                    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt .9 .2\n"
+                    "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
+    const ProgramResult result = workplace.run("relief-mesh unwrap out/a.obj out/b.obj --repack");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("1 x chart with overlapping or inverted triangles (chart 0): "
+                                      "keeps its shape"));
+}
+
+TEST(UnwrapCommand, SplitsAtEveryEdgeThatIsNotFlat) {
+    const Workplace workplace;
+    // Two squares in a tilted plane, and one that is folded by a tenth of a degree.
+    workplace.write("out/a.obj",
+                    "v 0 0 0\nv 1 0 .3\nv 2 0 .6\nv 3 0 .902\nv 0 1 .1\nv 1 1 .4\nv 2 1 .7\n"
+                    "v 3 1 1.002\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\n");
+    const std::string command = "relief-mesh unwrap out/a.obj out/b.obj --size 128x64 ";
+    EXPECT_THAT(workplace.run(command).out, HasSubstr("atlas     1 chart "));
+    EXPECT_THAT(workplace.run(command + "--split-hard 1").out, HasSubstr("atlas     1 chart "));
+    EXPECT_THAT(workplace.run(command + "--split-hard 0").out, HasSubstr("atlas     2 charts "));
+}
+
 TEST(UnwrapCommand, RefusesWhatItCannotDo) {
     const Workplace workplace;
-    ASSERT_EQ(workplace.run("relief-mesh process data/vase.obj vase.glb").exit_code, 0);
+    workplace.write_square("out/plain.obj", true);
+    std::filesystem::rename(workplace / "out/plain.obj", workplace / "plain.obj");
     expect_refusals(
         workplace, "relief-mesh", "old.glb",
-        {{"relief-mesh unwrap vase.glb out/old.glb", 2,
-          "vase.glb: glTF files cannot be unwrapped yet"},
-         {"relief-mesh unwrap data/vase.obj out/old.stl", 2, "out/old.stl"},
+        {{"relief-mesh unwrap data/vase.obj out/old.stl", 2, "out/old.stl"},
          {"relief-mesh unwrap data/vase.obj out/old.glb --size 8", 2, "--size 8"},
          {"relief-mesh unwrap data/vase.obj out/old.glb --size 64x", 2, "--size 64x"},
          {"relief-mesh unwrap data/vase.obj out/old.glb --padding 257", 2, "--padding 257"},
+         {"relief-mesh unwrap data/vase.obj out/old.glb --fix-mirrored", 2,
+          "--fix-mirrored: has no effect without --repack"},
+         {"relief-mesh unwrap data/vase.obj out/old.glb --repack --max-stretch 2", 2,
+          "--max-stretch: has no effect with --repack, which keeps charts"},
+         {"relief-mesh unwrap plain.obj out/old.glb --repack", 1,
+          "plain.obj: there are no texture coordinates to repack"},
          {"relief-mesh unwrap data/vase.obj out/old.glb --size 16 --padding 16", 1,
           "data/vase.obj: the padding leaves no room in the map"},
          {"relief-mesh unwrap data/vase.obj out/old.glb --texels-per-unit 1e6", 1,

@@ -1,29 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 // `relief-mesh unwrap IN OUT` gives a mesh texture coordinates. Tests: tests/tools/unwrap_test.cpp.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "commands.h"
 #include "common/command.h"
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/summary.h"
+#include "common/text.h"
 #include "relief/mesh/execution.h"
-#include "relief/mesh/model.h"
+#include "relief/mesh/model_texcoords.h"
 #include "relief/mesh/unwrap.h"
 
 namespace relief::tools {
 namespace {
 
+constexpr int max_texcoord_set = 1000;
+
+/// The relative density of texels.
+struct DensityRequest {
+    bool by_color = false;
+    std::vector<std::pair<std::string, double>> by_material;  ///< Others have density 1.
+};
+
 struct UnwrapCommand {
     std::filesystem::path input;
     std::filesystem::path output;
     UnwrapOptions options;
+    TexcoordOptions texcoords;
+    std::string density_text = "equal";
+    DensityRequest density;
     std::optional<double> hard_degrees;
     ReportOptions report;
     GeneralOptions general;
@@ -39,6 +55,83 @@ glm::ivec2 parse_map_size(const std::string& subject, const std::string& text) {
     return {side(text.substr(0, cross)), side(text.substr(cross + 1))};
 }
 
+/// Parses "equal", "color" or "Head=2,Eyes=4".
+DensityRequest parse_density(const std::string& subject, const std::string& text) {
+    DensityRequest request;
+    if (text == "equal") return request;
+    request.by_color = text == "color";
+    if (request.by_color) return request;
+    for (const std::string& part : split(text, ',')) {
+        const std::string here = fmt::format("{}: '{}'", subject, part);
+        const std::size_t equals = part.rfind('=');
+        if (equals == std::string::npos)
+            throw UsageError(here + ": not equal, color or MATERIAL=FACTOR",
+                             "for example Head=2,Eyes=4");
+        request.by_material.emplace_back(
+            part.substr(0, equals),
+            parse_number(here, part.substr(equals + 1), {0.001, 1000.0, ""}));
+    }
+    return request;
+}
+
+/// The names of the materials, by the indices in material ranges.
+std::vector<std::string> material_names(const Model& model) {
+    std::vector<std::string> names;
+    if (const auto* document = std::get_if<GltfDocument>(&model)) {
+        for (const GltfMaterial& material : document->view().materials)
+            names.push_back(material.name);
+    } else {
+        for (const MtlMaterial& material : std::get<MeshFile>(model).materials)
+            names.push_back(material.name);
+    }
+    return names;
+}
+
+/// \return the density of each material; empty if none is requested
+std::vector<float> material_densities(const Model& model, const DensityRequest& request) {
+    if (request.by_material.empty()) return {};
+    const std::vector<std::string> names = material_names(model);
+    std::vector<float> densities(names.size(), 1.0F);
+    for (const auto& [name, factor] : request.by_material) {
+        bool is_found = false;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            if (names[i] != name) continue;
+            is_found = true;
+            densities[i] = static_cast<float>(factor);
+        }
+        if (!is_found)
+            throw InvalidInput(fmt::format(
+                "--density: there is no material '{}', only {}", name,
+                names.empty() ? "faces without one" : fmt::format("{}", fmt::join(names, ", "))));
+    }
+    return densities;
+}
+
+/// The density of each triangle; empty if all are equal.
+std::vector<float> triangle_densities(const Mesh& mesh, bool by_color,
+                                      const std::vector<float>& by_material) {
+    /// Black would need no texels at all.
+    constexpr float min_brightness = 1.0F / 16.0F;
+    std::vector<float> densities;
+    if (by_color) {
+        if (mesh.colors.empty()) throw InvalidInput("--density color: there are no vertex colors");
+        densities.reserve(mesh.triangles.size());
+        for (const glm::uvec3& t : mesh.triangles) {
+            const glm::vec4 sum = mesh.colors[t.x] + mesh.colors[t.y] + mesh.colors[t.z];
+            const float brightness = (sum.r + sum.g + sum.b) / 9.0F;
+            densities.push_back(std::clamp(brightness, min_brightness, 1.0F));
+        }
+    } else if (!by_material.empty()) {
+        densities.assign(mesh.triangles.size(), 1.0F);
+        for (const MaterialRange& range : mesh.material_ranges) {
+            if (range.material)
+                std::fill_n(densities.begin() + range.first_triangle, range.triangle_count,
+                            by_material[*range.material]);
+        }
+    }
+    return densities;
+}
+
 /// The highest mip level in which a bilinear lookup in one chart does not reach another one.
 /// \return none if not even level 0 is safe
 std::optional<int> safe_level(int padding) {
@@ -51,6 +144,7 @@ std::optional<int> safe_level(int padding) {
 
 Json stats_json(const AtlasStats& stats) {
     return {{"charts", stats.charts},
+            {"stacked_parts", stats.stacked_parts},
             {"small_charts", stats.small_charts},
             {"used", stats.used},
             {"texels_per_unit", stats.texels_per_unit},
@@ -69,9 +163,15 @@ Json options_json(const UnwrapCommand& command) {
     Json json = {{"size", {options.size.x, options.size.y}},
                  {"padding", options.padding},
                  {"align", options.alignment},
+                 {"density", command.density_text},
                  {"max_stretch", options.max_stretch},
                  {"split_materials", options.split_materials},
-                 {"keep_seams", options.keep_seams}};
+                 {"keep_seams", options.keep_seams},
+                 {"stack", options.stack},
+                 {"repack", options.repack},
+                 {"fix_mirrored", options.unmirror},
+                 {"uv_set", command.texcoords.set},
+                 {"remove_textures", command.texcoords.remove_textures}};
     if (command.hard_degrees) json["split_hard"] = *command.hard_degrees;
     if (options.texels_per_unit) json["texels_per_unit"] = *options.texels_per_unit;
     return json;
@@ -85,6 +185,11 @@ void add_stats(Summary& summary, const AtlasStats& stats, const UnwrapOptions& o
                  fmt::format("seams: length {:.4g}, {:.3g} times the root of the area",
                              stats.seam_length, stats.relative_seam_length)},
                 {{"atlas", stats_json(stats)}});
+    summary.add("stacked",
+                stats.stacked_parts == 0
+                    ? ""
+                    : fmt::format("{} the texels of an equal one",
+                                  counted(stats.stacked_parts, "part shares", "parts share")));
     summary.add("density",
                 fmt::format("{:.4g} texels per unit; 5 to 95 % of the area: {:.3f} to {:.3f} of it",
                             stats.texels_per_unit, stats.min_density, stats.max_density));
@@ -97,41 +202,82 @@ void add_stats(Summary& summary, const AtlasStats& stats, const UnwrapOptions& o
                                              : "too few for bilinear lookups"));
 }
 
-ExitCode unwrap_model(const CLI::App& app, const UnwrapCommand& command) {
-    UnwrapOptions options = command.options;
+/// Refuses options of new charts with --repack.
+void refuse_new_charts(const CLI::App& app) {
+    for (const char* option : {"--max-stretch", "--split-hard", "--split-materials", "--keep-seams",
+                               "--density", "--stack"}) {
+        if (is_given(app, option))
+            throw UsageError(
+                fmt::format("{}: has no effect with --repack, which keeps charts", option));
+    }
+}
+
+/// Checks the files and the options that depend on their formats. \throws UsageError, FileError
+void check_request(const CLI::App& app, const UnwrapCommand& command) {
     check(command.report, {command.input, command.output});
-    if (is_document(readable_format(command.input)))
-        throw UsageError(command.input.string() + ": glTF files cannot be unwrapped yet",
-                         "give a mesh file: .obj, .ply, .stl or .off");
-    writable_format(command.output);
+    const bool has_sets = is_document(readable_format(command.input));
+    const bool keeps_sets = is_document(writable_format(command.output));
+    if (command.texcoords.set > 0 && !(has_sets && keeps_sets))
+        throw UsageError(
+            fmt::format("--uv-set {}: {} has only texture coordinate set 0", command.texcoords.set,
+                        (has_sets ? command.output : command.input).string()),
+            "only glTF has several");
+    if (command.options.repack)
+        refuse_new_charts(app);
+    else
+        refuse_given(app, {"--fix-mirrored"}, "--repack");
     require_folder_of(command.output);
+}
+
+ExitCode unwrap_model(const CLI::App& app, const UnwrapCommand& command) {
+    check_request(app, command);
+    UnwrapOptions options = command.options;
     if (command.hard_degrees) options.split_hard = *command.hard_degrees * std::numbers::pi / 180.0;
     set_thread_limit(command.general.threads);
     Stages stages(command.general.quiet);
     Findings findings;
     Report report;
     Model model = stages.run("read", [&] { return read_model(command.input, report); });
-    Mesh& mesh = std::get<MeshFile>(model).mesh;
-    const std::size_t vertices_read = mesh.positions.size();
-    const Unwrapped unwrapped = about(command.input, [&] {
-        return stages.run("unwrap", [&] { return unwrap(mesh, options, report); });
-    });
-    mesh = with_texcoords(mesh, unwrapped).mesh;
-    std::vector<std::string> omitted;
-    stages.run("write",
-               [&] { omitted = write_model(command.output, model, command.input, false, report); });
     findings.add("", report);
+    const std::vector<float> by_material =
+        about(command.input, [&] { return material_densities(model, command.density); });
+    AtlasStats stats;
+    const ChangedTexcoords changed = about(command.input, [&] {
+        return change_texcoords(
+            model, command.texcoords, [&](const TexcoordInput& input, Report& found) {
+                return stages.run("unwrap", [&] {
+                    options.first_vertices = input.first_vertices;
+                    options.densities =
+                        triangle_densities(input.mesh, command.density.by_color, by_material);
+                    Unwrapped unwrapped = unwrap(input.mesh, options, found);
+                    stats = unwrapped.stats;
+                    return std::move(unwrapped.corner_texcoords);
+                });
+            });
+    });
+    for (const PartReport& part : changed.reports)
+        findings.add(part.part, part.report);
+    std::vector<std::string> omitted;
+    Report write_report;
+    stages.run("write", [&] {
+        omitted =
+            write_model(command.output, model, command.input, changed.has_tangents, write_report);
+    });
+    findings.add("", write_report);
 
     Summary summary;
     summary.add("read",
-                fmt::format("{}: {}, {}", command.input.string(),
-                            counted(mesh.triangles.size(), "triangle"),
-                            counted(vertices_read, "vertex", "vertices")),
-                {{"triangles", mesh.triangles.size()}, {"vertices_read", vertices_read}});
-    add_stats(summary, unwrapped.stats, options);
-    summary.add("result", fmt::format("{}", counted(mesh.positions.size(), "vertex", "vertices")),
-                {{"vertices_written", mesh.positions.size()}});
+                fmt::format("{}: {}, {}, {}", command.input.string(),
+                            format_name(readable_format(command.input)),
+                            counted(changed.triangles, "triangle"),
+                            counted(changed.vertices_read, "vertex", "vertices")),
+                {{"triangles", changed.triangles}, {"vertices_read", changed.vertices_read}});
+    add_stats(summary, stats, options);
+    summary.add("result",
+                fmt::format("{}", counted(changed.vertices_written, "vertex", "vertices")),
+                {{"vertices_written", changed.vertices_written}});
     summary.add_findings(findings);
+    summary.add("notes", changed.notes, {{"notes", changed.notes}});
     add_omitted(summary, omitted, command.output);
     summary.add_times(stages);
     summary.add("wrote", file_and_size(command.output));
@@ -146,9 +292,11 @@ ExitCode unwrap_model(const CLI::App& app, const UnwrapCommand& command) {
 }
 
 void add_unwrap_options(CLI::App& app, UnwrapCommand& command) {
-    add_file(app, "IN", command.input, "The mesh: .obj, .ply, .stl or .off.");
+    add_file(app, "IN", command.input,
+             "The model: .glb, .gltf, .obj, .ply, .stl or .off. All its meshes share one map.");
     add_file(app, "OUT", command.output,
-             "The mesh with texture coordinates: .glb, .gltf, .obj or .ply.");
+             "The model with texture coordinates: .glb, .gltf, .obj or .ply. All other data of a "
+             "glTF file stays.");
     const std::string map = "Map";
     add_value(app, "--size", "N|WxH", "The size of the map in texels, 16 to 65536. Default: 2048.",
               [&command](const std::string& subject, const std::string& text) {
@@ -175,6 +323,26 @@ void add_unwrap_options(CLI::App& app, UnwrapCommand& command) {
                {1e-30, Range().max, ""},
                "The density of texels. Default: as dense as the map permits.")
         .group(map);
+    add_value(app, "--density", "equal|color|MATERIAL=FACTOR,...",
+              "The relative density of texels: of materials by their names, the others have 1; or "
+              "the mean brightness of vertex colors, 1/16 to 1. A factor of 2 means twice as many "
+              "texels in each direction. Default: equal.",
+              [&command](const std::string& subject, const std::string& text) {
+                  command.density_text = text;
+                  command.density = parse_density(subject, text);
+              })
+        .group(map);
+    add_value(app, "--uv-set", "N",
+              "Write texture coordinate set N (TEXCOORD_N of glTF). Sets that the file has are "
+              "replaced, others stay. Default: 0.",
+              [&command](const std::string& subject, const std::string& text) {
+                  command.texcoords.set = parse_integer(subject, text, 0, max_texcoord_set);
+              })
+        .group(map);
+    add_switch(app, "--remove-textures", command.texcoords.remove_textures,
+               "Remove the textures that materials look up at replaced coordinates. Default: they "
+               "stay, although they do not fit any more, which is a finding.")
+        .group(map);
     const std::string charts = "Charts";
     add_number(
         app, "--max-stretch", "S", command.options.max_stretch, {1.01, 1000.0, ""},
@@ -184,13 +352,30 @@ void add_unwrap_options(CLI::App& app, UnwrapCommand& command) {
     add_number(
         app, "--split-hard", "DEGREES", command.hard_degrees, {0.0, 180.0, "degrees"},
         "Put seams where the angle between two triangles is larger, 0 to 180, as far as these "
-        "edges separate charts. Default: nowhere.")
+        "edges separate charts; 0: at all edges that are not flat. Default: nowhere.")
         .group(charts);
     add_switch(app, "--split-materials", command.options.split_materials,
                "Put seams between materials. Default: a chart may have several materials.")
         .group(charts);
-    add_switch(app, "--keep-seams", command.options.keep_seams,
-               "Keep the seams of the texture coordinates of IN. Default: they are ignored.")
+    add_switch(
+        app, "--keep-seams", command.options.keep_seams,
+        "Keep the seams of the texture coordinates of IN: those of set N, or of the first set "
+        "if there is no set N. Default: they are ignored.")
+        .group(charts);
+    add_switch(
+        app, "--stack", command.options.stack,
+        "Parts that are equal up to a rotation and a shift share their texels. Mirrored parts "
+        "do not. Default: every part has texels of its own.")
+        .group(charts);
+    add_switch(app, "--repack", command.options.repack,
+               "Keep the charts of the texture coordinates of IN with their shapes and relative "
+               "sizes, and only pack them anew: those of set N, or of the first set if there is no "
+               "set N. Default: compute new charts.")
+        .group(charts);
+    add_switch(
+        app, "--fix-mirrored", command.options.unmirror,
+        "With --repack: reflect mirrored charts, which would bake wrong normal maps. Default: "
+        "they stay, which is a finding.")
         .group(charts);
     add_report_options(app, command.report);
     add_general_options(app, command.general);
@@ -198,7 +383,9 @@ void add_unwrap_options(CLI::App& app, UnwrapCommand& command) {
                        "relief-mesh unwrap data/vase.obj out/vase-unwrapped.glb --size 1024 "
                        "--padding 8 --split-hard 60",
                        "relief-mesh unwrap data/vase.obj out/vase-unwrapped.ply --size 2048x1024 "
-                       "--align 4"});
+                       "--align 4",
+                       "relief-mesh unwrap out/vase-unwrapped.glb out/vase-two-sets.glb --uv-set "
+                       "1"});
 }
 
 }  // namespace
