@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "relief/mesh/image_file.h"
 #include "relief/mesh/mesh_file.h"
 #include "tools/workplace.h"
 
@@ -115,6 +116,21 @@ TEST(UnwrapCommand, SplitsAtEveryEdgeThatIsNotFlat) {
     EXPECT_THAT(workplace.run(command + "--split-hard 0").out, HasSubstr("atlas     2 charts "));
 }
 
+TEST(UnwrapCommand, DrawsItsCharts) {
+    const Workplace workplace;
+    for (const std::string shows : {"charts", "density", "stretch"}) {
+        const ProgramResult result = workplace.run(
+            "relief-mesh unwrap data/vase.obj out/a.glb --size 4096x1024 --picture out/" + shows +
+            ".png --picture-shows " + shows);
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        const ImageInfo picture = read_image_info(workplace / ("out/" + shows + ".png"));
+        EXPECT_EQ(picture.width, 2048) << "at most";
+        EXPECT_EQ(picture.height, 512);
+    }
+    EXPECT_NE(workplace.read("out/charts.png"), workplace.read("out/density.png"));
+    EXPECT_NE(workplace.read("out/density.png"), workplace.read("out/stretch.png"));
+}
+
 TEST(UnwrapCommand, RefusesWhatItCannotDo) {
     const Workplace workplace;
     workplace.write_square("out/plain.obj", true);
@@ -125,6 +141,10 @@ TEST(UnwrapCommand, RefusesWhatItCannotDo) {
          {"relief-mesh unwrap data/vase.obj out/old.glb --size 8", 2, "--size 8"},
          {"relief-mesh unwrap data/vase.obj out/old.glb --size 64x", 2, "--size 64x"},
          {"relief-mesh unwrap data/vase.obj out/old.glb --padding 257", 2, "--padding 257"},
+         {"relief-mesh unwrap data/vase.obj out/old.glb --picture out/a.bmp", 2,
+          "--picture out/a.bmp: the format is not supported"},
+         {"relief-mesh unwrap data/vase.obj out/old.glb --picture-shows stretch", 2,
+          "--picture-shows: has no effect without --picture"},
          {"relief-mesh unwrap data/vase.obj out/old.glb --fix-mirrored", 2,
           "--fix-mirrored: has no effect without --repack"},
          {"relief-mesh unwrap data/vase.obj out/old.glb --repack --max-stretch 2", 2,

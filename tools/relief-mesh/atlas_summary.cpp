@@ -33,6 +33,7 @@ glm::ivec2 parse_atlas_size(const std::string& subject, const std::string& text)
 
 Json stats_json(const AtlasStats& stats) {
     return {{"charts", stats.charts},
+            {"stacked_parts", stats.stacked_parts},
             {"small_charts", stats.small_charts},
             {"used", stats.used},
             {"texels_per_unit", stats.texels_per_unit},
@@ -63,6 +64,11 @@ void add_stats(Summary& summary, const AtlasStats& stats, const glm::ivec2& size
                  fmt::format("seams: length {:.4g}, {:.3g} times the root of the area",
                              stats.seam_length, stats.relative_seam_length)},
                 {{"atlas", stats_json(stats)}});
+    summary.add("stacked",
+                stats.stacked_parts == 0
+                    ? ""
+                    : fmt::format("{} the texels of an equal one",
+                                  counted(stats.stacked_parts, "part shares", "parts share")));
     summary.add("density",
                 fmt::format("{:.4g} texels per unit; 5 to 95 % of the area: {:.3f} to {:.3f} of it",
                             stats.texels_per_unit, stats.min_density, stats.max_density));

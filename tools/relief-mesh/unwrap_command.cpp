@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "atlas_summary.h"
 #include "commands.h"
 #include "common/command.h"
 #include "common/model_file.h"
@@ -41,19 +42,10 @@ struct UnwrapCommand {
     std::string density_text = "equal";
     DensityRequest density;
     std::optional<double> hard_degrees;
+    AtlasPictureOptions picture;
     ReportOptions report;
     GeneralOptions general;
 };
-
-/// Parses "2048" or "2048x1024".
-glm::ivec2 parse_map_size(const std::string& subject, const std::string& text) {
-    const std::size_t cross = text.find('x');
-    const auto side = [&](const std::string& number) {
-        return parse_integer(subject, number, 16, 65536);
-    };
-    if (cross == std::string::npos) return glm::ivec2(side(text));
-    return {side(text.substr(0, cross)), side(text.substr(cross + 1))};
-}
 
 /// Parses "equal", "color" or "Head=2,Eyes=4".
 DensityRequest parse_density(const std::string& subject, const std::string& text) {
@@ -142,22 +134,6 @@ std::optional<int> safe_level(int padding) {
     return level;
 }
 
-Json stats_json(const AtlasStats& stats) {
-    return {{"charts", stats.charts},
-            {"stacked_parts", stats.stacked_parts},
-            {"small_charts", stats.small_charts},
-            {"used", stats.used},
-            {"texels_per_unit", stats.texels_per_unit},
-            {"min_density", stats.min_density},
-            {"max_density", stats.max_density},
-            {"stretch", stats.stretch},
-            {"mean_anisotropy", stats.mean_anisotropy},
-            {"max_anisotropy", stats.max_anisotropy},
-            {"seam_length", stats.seam_length},
-            {"relative_seam_length", stats.relative_seam_length},
-            {"area", stats.area}};
-}
-
 Json options_json(const UnwrapCommand& command) {
     const UnwrapOptions& options = command.options;
     Json json = {{"size", {options.size.x, options.size.y}},
@@ -177,27 +153,9 @@ Json options_json(const UnwrapCommand& command) {
     return json;
 }
 
-void add_stats(Summary& summary, const AtlasStats& stats, const UnwrapOptions& options) {
-    summary.add("atlas",
-                {fmt::format("{} ({} below 64 texels), {:.1f} % of {} x {} texels used",
-                             counted(stats.charts, "chart"), stats.small_charts, 100.0 * stats.used,
-                             options.size.x, options.size.y),
-                 fmt::format("seams: length {:.4g}, {:.3g} times the root of the area",
-                             stats.seam_length, stats.relative_seam_length)},
-                {{"atlas", stats_json(stats)}});
-    summary.add("stacked",
-                stats.stacked_parts == 0
-                    ? ""
-                    : fmt::format("{} the texels of an equal one",
-                                  counted(stats.stacked_parts, "part shares", "parts share")));
-    summary.add("density",
-                fmt::format("{:.4g} texels per unit; 5 to 95 % of the area: {:.3f} to {:.3f} of it",
-                            stats.texels_per_unit, stats.min_density, stats.max_density));
-    summary.add("stretch",
-                fmt::format("L2 {:.4f}; ratio of singular values: mean {:.3f}, max {:.2f}",
-                            stats.stretch, stats.mean_anisotropy, stats.max_anisotropy));
-    const std::optional<int> level = safe_level(options.padding);
-    summary.add("padding", fmt::format("{} texels, {}", options.padding,
+void add_padding(Summary& summary, int padding) {
+    const std::optional<int> level = safe_level(padding);
+    summary.add("padding", fmt::format("{} texels, {}", padding,
                                        level ? fmt::format("enough up to mip level {}", *level)
                                              : "too few for bilinear lookups"));
 }
@@ -215,6 +173,9 @@ void refuse_new_charts(const CLI::App& app) {
 /// Checks the files and the options that depend on their formats. \throws UsageError, FileError
 void check_request(const CLI::App& app, const UnwrapCommand& command) {
     check(command.report, {command.input, command.output});
+    std::vector<std::filesystem::path> files = {command.input, command.output};
+    if (command.report.file) files.push_back(*command.report.file);
+    check(command.picture, files);
     const bool has_sets = is_document(readable_format(command.input));
     const bool keeps_sets = is_document(writable_format(command.output));
     if (command.texcoords.set > 0 && !(has_sets && keeps_sets))
@@ -245,14 +206,19 @@ ExitCode unwrap_model(const CLI::App& app, const UnwrapCommand& command) {
     const ChangedTexcoords changed = about(command.input, [&] {
         return change_texcoords(
             model, command.texcoords, [&](const TexcoordInput& input, Report& found) {
-                return stages.run("unwrap", [&] {
+                Unwrapped unwrapped = stages.run("unwrap", [&] {
                     options.first_vertices = input.first_vertices;
                     options.densities =
                         triangle_densities(input.mesh, command.density.by_color, by_material);
-                    Unwrapped unwrapped = unwrap(input.mesh, options, found);
-                    stats = unwrapped.stats;
-                    return std::move(unwrapped.corner_texcoords);
+                    return unwrap(input.mesh, options, found);
                 });
+                stats = unwrapped.stats;
+                if (command.picture.file)
+                    stages.run("draw", [&] {
+                        write_picture(command.picture, input.mesh, unwrapped.corner_texcoords,
+                                      unwrapped.chart, options.size);
+                    });
+                return std::move(unwrapped.corner_texcoords);
             });
     });
     for (const PartReport& part : changed.reports)
@@ -272,7 +238,8 @@ ExitCode unwrap_model(const CLI::App& app, const UnwrapCommand& command) {
                             counted(changed.triangles, "triangle"),
                             counted(changed.vertices_read, "vertex", "vertices")),
                 {{"triangles", changed.triangles}, {"vertices_read", changed.vertices_read}});
-    add_stats(summary, stats, options);
+    add_stats(summary, stats, options.size);
+    add_padding(summary, options.padding);
     summary.add("result",
                 fmt::format("{}", counted(changed.vertices_written, "vertex", "vertices")),
                 {{"vertices_written", changed.vertices_written}});
@@ -280,7 +247,9 @@ ExitCode unwrap_model(const CLI::App& app, const UnwrapCommand& command) {
     summary.add("notes", changed.notes, {{"notes", changed.notes}});
     add_omitted(summary, omitted, command.output);
     summary.add_times(stages);
-    summary.add("wrote", file_and_size(command.output));
+    std::vector<std::string> wrote = {file_and_size(command.output)};
+    if (command.picture.file) wrote.push_back(file_and_size(*command.picture.file));
+    summary.add("wrote", wrote);
     if (!command.general.quiet) summary.print();
     Json json = {{"tool", "relief-mesh unwrap"},
                  {"version", version()},
@@ -300,7 +269,7 @@ void add_unwrap_options(CLI::App& app, UnwrapCommand& command) {
     const std::string map = "Map";
     add_value(app, "--size", "N|WxH", "The size of the map in texels, 16 to 65536. Default: 2048.",
               [&command](const std::string& subject, const std::string& text) {
-                  command.options.size = parse_map_size(subject, text);
+                  command.options.size = parse_atlas_size(subject, text);
               })
         .group(map);
     add_value(
@@ -377,13 +346,14 @@ void add_unwrap_options(CLI::App& app, UnwrapCommand& command) {
         "With --repack: reflect mirrored charts, which would bake wrong normal maps. Default: "
         "they stay, which is a finding.")
         .group(charts);
+    add_picture_options(app, command.picture);
     add_report_options(app, command.report);
     add_general_options(app, command.general);
     set_examples(app, {"relief-mesh unwrap data/vase.obj out/vase-unwrapped.obj",
                        "relief-mesh unwrap data/vase.obj out/vase-unwrapped.glb --size 1024 "
                        "--padding 8 --split-hard 60",
                        "relief-mesh unwrap data/vase.obj out/vase-unwrapped.ply --size 2048x1024 "
-                       "--align 4",
+                       "--align 4 --picture out/vase-charts.png",
                        "relief-mesh unwrap out/vase-unwrapped.glb out/vase-two-sets.glb --uv-set "
                        "1"});
 }
