@@ -718,7 +718,7 @@ void add_mesh_functions(py::module_& module) {
         arg("weights") = std::map<std::string, double>(), arg("normals") = "keep",
         arg("report") = py::none(),
         "Remove vertices by edge collapses until a number of triangles or an error.\n\n"
-        "`max_error` is the distance between the surfaces, and `max_normal_degrees` the\n"
+        "`max_error` is the maximum distance between the surfaces, and `max_normal_degrees` the\n"
         "angle between a changed triangle and the surface. `keep_borders` and `keep_seams`\n"
         "leave boundaries and seams unchanged. Without `keep_positions`, the vertices that\n"
         "remain move to where the result fits the mesh best. `weights` has any of \"texcoords\",\n"

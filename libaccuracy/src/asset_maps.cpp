@@ -133,7 +133,9 @@ AssetExperiment measure_asset_heights(const BumpSample& sample, glm::ivec2 size,
     }
     finish(asset, std::move(measured),
            {.reference = is_lossy ? unknown_loss(options) : "the map itself",
-            .is_reference_unknown = is_lossy},
+            .is_reference_unknown = is_lossy,
+            .limited_reference =
+                expected_error(reference, result.measurements.front(), options.request.kind).map},
            options);
     return asset;
 }
@@ -148,12 +150,17 @@ AssetExperiment measure_asset_heights(const Image& height, const BumpOptions& bu
 
 namespace {
 
-/// The RMS angle that rounding to integer codes of `bits` bits adds to a normal, in degrees:
-/// uniformly distributed errors of up to half a code on two axes. 0 for floats.
-double rounding_degrees(int bits) {
+/// The angle that rounding to integer codes of `bits` bits adds to a normal, in degrees: uniformly
+/// distributed errors of up to half a code on two axes. 0 for floats.
+double rounding_degrees(int bits, ErrorKind kind) {
     if (bits >= 32) return 0.0;
     const double code = 2.0 / (std::exp2(bits) - 1.0);
-    return glm::degrees(code * std::sqrt(2.0 / 12.0));
+    // The statistics of the distance from the center of a square of side 1.
+    const double distance = kind == ErrorKind::mean  ? 0.3825978582
+                            : kind == ErrorKind::p99 ? 0.6577577820
+                            : kind == ErrorKind::max ? std::sqrt(0.5)
+                                                     : std::sqrt(2.0 / 12.0);
+    return glm::degrees(code * distance);
 }
 
 /// The file itself: without other options, `relief-bake convert` keeps every code.
@@ -187,7 +194,8 @@ AssetExperiment measure_asset_normals(const Image& normals, const NormalMapStora
         "The normals as stored in the file, in {} bits. {}", file.bits,
         is_lossy ? lossy_note(options)
                  : "The error of the file is unknown, except for its rounding to these bits.");
-    if (file.bits < 32 && !is_lossy) experiment.reference_error = rounding_degrees(file.bits);
+    if (file.bits < 32 && !is_lossy)
+        experiment.reference_error = rounding_degrees(file.bits, ErrorKind::rms);
     experiment.input = fmt::format("{} x {} texels", normals.width, normals.height);
     if (parts.size() > 1) experiment.input += fmt::format(", {:.0f} of them", experiment.items);
     experiment.item = "texel";
@@ -216,7 +224,8 @@ AssetExperiment measure_asset_normals(const Image& normals, const NormalMapStora
     }
     finish(asset, std::move(methods),
            {CostKind::bytes, invisible_degrees,
-            is_lossy ? unknown_loss(options) : "the rounding of the file itself", is_lossy},
+            is_lossy ? unknown_loss(options) : "the rounding of the file itself", is_lossy,
+            rounding_degrees(file.bits, options.request.kind)},
            options);
     return asset;
 }

@@ -39,14 +39,15 @@ double nominal_cost(const Measurement& measurement, CostKind kind) {
 
 std::vector<Candidate> candidates_of(const Experiment& experiment, const RecommendationRule& rule) {
     std::vector<Candidate> all;
-    const double reference = experiment.reference_error.value_or(0.0);
+    const double reference =
+        rule.limited_reference.value_or(experiment.reference_error.value_or(0.0));
     bool is_measured = false;
     for (std::size_t i = 0; i < experiment.measurements.size(); ++i) {
         const Measurement& one = experiment.measurements[i];
         if (!rule.choosable.empty() && rule.choosable[i] == 0) continue;
         if (one.error.undefined > 0 || one.error.count == 0 || !std::isfinite(one.error.rms))
             continue;
-        const double bounded = std::hypot(reference, one.error.*(rule.request.figure));
+        const double bounded = std::hypot(reference, one.error.*figure_of(rule.request.kind));
         all.push_back(
             {i, one.error.rms,
              rule.is_reference_unknown ? std::numeric_limits<double>::infinity() : bounded,
@@ -137,10 +138,8 @@ const Candidate* next_more_accurate(const std::vector<Candidate>& all, const Can
 }
 
 /// The name of a statistic after its unit.
-std::string figure_name(double ErrorStats::*figure) {
-    return figure == &ErrorStats::p99   ? "(99 %)"
-           : figure == &ErrorStats::max ? "(maximum)"
-                                        : "(RMS)";
+std::string after_unit(ErrorKind kind) {
+    return fmt::format("({})", statistic_name(kind));
 }
 
 /// An expected error and its upper end, if it is a range.
@@ -179,10 +178,8 @@ std::string recommendation_text(const Experiment& experiment, const Recommendati
         text += fmt::format("{:.3g} {} RMS", taken.error, unit);
         if (rule.is_reference_unknown) text += fmt::format(", and {}", rule.reference);
     }
-    if (rule.request.max_error && rule.request.figure != &ErrorStats::rms) {
-        text +=
-            fmt::format(", {:.3g} {} {}", taken.bounded, unit, figure_name(rule.request.figure));
-    }
+    if (rule.request.max_error && rule.request.kind != ErrorKind::rms)
+        text += fmt::format(", {:.3g} {} {}", taken.bounded, unit, after_unit(rule.request.kind));
     if (taken.cost > 0.0) text += " at " + cost_text(taken.cost, rule.cost);
     if (next == nullptr) return text + "; no other method is more accurate";
     const double less = taken.error - next->error;
@@ -210,16 +207,17 @@ std::string refusal_text(const Experiment& experiment, const RecommendationRule&
             all, [](const Candidate& a, const Candidate& b) { return a.bounded < b.bounded; });
         if (rule.is_reference_unknown) {
             return fmt::format("no method is known to be within {:g} {} {}, because of {}",
-                               *request.max_error, experiment.error_unit,
-                               figure_name(request.figure), rule.reference);
+                               *request.max_error, experiment.error_unit, after_unit(request.kind),
+                               rule.reference);
         }
         if (!(least->bounded <= *request.max_error)) {
             std::string text =
                 fmt::format("no method is within {:g} {} {}: the smallest error is {:.3g}, with {}",
-                            *request.max_error, experiment.error_unit, figure_name(request.figure),
+                            *request.max_error, experiment.error_unit, after_unit(request.kind),
                             least->bounded, name(*least));
             if (experiment.reference_error && *experiment.reference_error > 0.0)
-                text += fmt::format(" ({} {:.3g})", rule.reference, *experiment.reference_error);
+                text += fmt::format(" ({} {:.3g})", rule.reference,
+                                    rule.limited_reference.value_or(*experiment.reference_error));
             return text;
         }
         MethodRequest error_alone = request;
@@ -228,7 +226,7 @@ std::string refusal_text(const Experiment& experiment, const RecommendationRule&
         const Candidate* cheapest = first_of(accurate_enough, is_cheaper);
         return fmt::format(
             "no method is within {:g} {} {} and {}: the fastest with that error takes {}, with {}",
-            *request.max_error, experiment.error_unit, figure_name(request.figure),
+            *request.max_error, experiment.error_unit, after_unit(request.kind),
             format_seconds(*request.max_seconds), format_seconds(cheapest->cost), name(*cheapest));
     }
     const Candidate* cheapest = first_of(all, is_cheaper);
@@ -299,8 +297,9 @@ void detail::finish(AssetExperiment& asset, std::vector<Method> methods, const A
     }
     mark_pareto_optimal(asset.experiment);
     asset.recommendation =
-        recommended(asset.experiment, {options.request, rule.cost, rule.negligible_error, choosable,
-                                       nominal_costs, rule.reference, rule.is_reference_unknown});
+        recommended(asset.experiment,
+                    {options.request, rule.cost, rule.negligible_error, choosable, nominal_costs,
+                     rule.reference, rule.is_reference_unknown, rule.limited_reference});
     set_finding(asset);
 }
 

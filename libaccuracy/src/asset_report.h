@@ -27,6 +27,7 @@ struct AssetRule {
     double negligible_error = 0.0;      ///< Degrees; RecommendationRule::negligible_error.
     std::string reference{};            ///< Names the source of Experiment::reference_error.
     bool is_reference_unknown = false;  ///< RecommendationRule::is_reference_unknown.
+    std::optional<double> limited_reference{};  ///< RecommendationRule::limited_reference.
 };
 
 /// Begins an experiment on a file: id "own/FILE/TOPIC", title "TITLE of FILE", unit degrees.

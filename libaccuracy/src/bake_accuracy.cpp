@@ -205,9 +205,9 @@ class SampleSearch {
                 smallest = &bake;
         }
         NoBakeWithinLimit failure(
-            fmt::format("no choice of samples and bits is within {:g} degrees: the minimum is "
+            fmt::format("no choice of samples and bits is within {:g} degrees ({}): the minimum is "
                         "{:.3g}",
-                        search_.max_degrees, error(*smallest)));
+                        search_.max_degrees, statistic_name(search_.kind), error(*smallest)));
         failure.smallest = *smallest;
         failure.has_all_samples = has_all_samples;
         for (const MeasuredBake& bake : all_) {

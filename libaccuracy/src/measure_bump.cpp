@@ -77,12 +77,16 @@ BumpReference reference_for(const BumpSample& sample, const BumpExperimentOption
     reference.method =
         BumpMethod{best.kernel, best.gaussian_radius, Arithmetic::float64, 32, destaircased};
     reference.reference_degrees = best.rms_degrees;
+    reference.reference_mean_degrees = best.mean_degrees;
+    reference.reference_p99_degrees = best.p99_degrees;
     reference.reference_max_degrees = best.max_degrees;
     reference.upper_degrees = best.upper_rms_degrees;
+    reference.upper_mean_degrees = best.upper_mean_degrees;
+    reference.upper_p99_degrees = best.upper_p99_degrees;
     reference.upper_max_degrees = best.upper_max_degrees;
     reference.description = fmt::format(
         "the kernel selected for this map in float64{}, with an expected error of about {:.2g} "
-        "degrees itself; the exact normals are unknown",
+        "degrees RMS itself; the exact normals are unknown",
         destaircased ? " after smoothing its steps" : "", best.rms_degrees);
     return reference;
 }
@@ -179,6 +183,34 @@ void measure_methods(std::span<const BumpMethod> methods, const Trial& trial,
 
 double error_of(const BumpMeasurement& measurement, ErrorKind kind) {
     return measurement.error.*figure_of(kind);
+}
+
+double error_of(const BumpReference& reference, ErrorKind kind) {
+    switch (kind) {
+        case ErrorKind::mean:
+            return reference.reference_mean_degrees;
+        case ErrorKind::p99:
+            return reference.reference_p99_degrees;
+        case ErrorKind::max:
+            return reference.reference_max_degrees;
+        case ErrorKind::rms:
+            break;
+    }
+    return reference.reference_degrees;
+}
+
+double upper_error_of(const BumpReference& reference, ErrorKind kind) {
+    switch (kind) {
+        case ErrorKind::mean:
+            return reference.upper_mean_degrees;
+        case ErrorKind::p99:
+            return reference.upper_p99_degrees;
+        case ErrorKind::max:
+            return reference.upper_max_degrees;
+        case ErrorKind::rms:
+            break;
+    }
+    return reference.upper_degrees;
 }
 
 }  // namespace
@@ -300,14 +332,12 @@ BumpExperiment measure_bump(const BumpField& field, std::span<const BumpMethod> 
 
 ExpectedError expected_error(const BumpReference& reference, const BumpMeasurement& measurement,
                              ErrorKind kind) {
-    return {kind == ErrorKind::rms ? reference.reference_degrees : reference.reference_max_degrees,
-            error_of(measurement, kind)};
+    return {error_of(reference, kind), error_of(measurement, kind)};
 }
 
 ExpectedError expected_error_upper(const BumpReference& reference,
                                    const BumpMeasurement& measurement, ErrorKind kind) {
-    return {kind == ErrorKind::rms ? reference.upper_degrees : reference.upper_max_degrees,
-            error_of(measurement, kind)};
+    return {upper_error_of(reference, kind), error_of(measurement, kind)};
 }
 
 const BumpMeasurement* cheapest_within(const BumpExperiment& experiment,

@@ -90,7 +90,7 @@ TEST(AssetHeights, AreHeldToABoundWithTheErrorOfTheMapItself) {
     EXPECT_LT(most_accurate(own.experiment)->error.rms, 0.5);
     EXPECT_EQ(own.recommendation.method, std::nullopt);
     EXPECT_THAT(own.recommendation.description,
-                HasSubstr("no method is within 0.5 degrees (RMS): the smallest error "));
+                HasSubstr("no method is within 0.5 degrees (99 %): the smallest error "));
     EXPECT_THAT(own.recommendation.description, HasSubstr(" (the map itself "));
 }
 

@@ -73,6 +73,7 @@ TEST(Recommended, PrefersTheSmallestOfEquals) {
 
 TEST(Recommended, NextMethodOfEqualTimeIsDescribedAsEqual) {
     RecommendationRule rule;
+    rule.request.kind = ErrorKind::rms;
     rule.request.max_error = 0.5;
     EXPECT_EQ(
         recommended(experiment_of({measured("a", 0.5, 0.0100), measured("b", 0.4, 0.0101)}), rule)
@@ -91,11 +92,22 @@ TEST(Recommended, IgnoresGainsBelowTheUncertaintyOfTheReference) {
 
 TEST(Recommended, KeepsWithinAnError) {
     RecommendationRule rule;
+    rule.request.kind = ErrorKind::rms;
     rule.request.max_error = 0.045;
     EXPECT_EQ(recommended(usual(), rule).method, 3U);
     rule.request.max_error = 2.0;
     EXPECT_EQ(recommended(usual(), rule).method, 0U);
-    rule.request.figure = &ErrorStats::max;  // 3, 3.6, 0.15, 0.12
+    rule.request.kind = default_error_kind;  // 2, 2.4, 0.1, 0.08
+    rule.request.max_error = 0.09;
+    EXPECT_EQ(recommended(usual(), rule).method, 3U);
+    EXPECT_THAT(recommended(usual(), rule).description,
+                HasSubstr("best: 0.04 degrees RMS, 0.08 degrees (99 %) at "));
+    // The reference has an error in this statistic, too.
+    rule.limited_reference = 0.05;
+    EXPECT_EQ(recommended(usual(), rule).method, std::nullopt);
+    rule.limited_reference.reset();
+    rule.request.max_error = 2.0;
+    rule.request.kind = ErrorKind::max;  // 3, 3.6, 0.15, 0.12
     EXPECT_EQ(recommended(usual(), rule).method, 2U);
     rule.request.max_error = 0.01;
     const Recommendation none = recommended(usual(), rule);
@@ -114,6 +126,7 @@ TEST(Recommended, KeepsWithinATime) {
     EXPECT_EQ(recommended(usual(), rule).description,
               "no method is within 1.00 ms: the fastest takes 10.0 ms, with rough");
     rule.request.max_seconds = 0.1;
+    rule.request.kind = ErrorKind::rms;
     rule.request.max_error = 0.045;
     EXPECT_EQ(recommended(usual(), rule).description,
               "no method is within 0.045 degrees (RMS) and 100 ms: the fastest with that error "
@@ -152,6 +165,7 @@ TEST(Recommended, CountsTheErrorOfTheReferenceToo) {
     Experiment experiment = usual();
     experiment.reference_error = 0.12;
     RecommendationRule rule;
+    rule.request.kind = ErrorKind::rms;
     rule.reference = "the map itself";
     // "good" has 0.05 and "best" 0.04, with the reference 0.13 and 0.1265.
     rule.request.max_error = 0.131;
@@ -185,7 +199,7 @@ TEST(Recommended, NamesTheStatisticAndTheRangeOfAnError) {
         recommended(experiment, rule).description,
         HasSubstr("good: 0.13 to 1.2 degrees RMS expected (the map itself 0.12 to 1.2, this "
                   "method adds 0.05) at "));
-    rule.request.figure = &ErrorStats::max;
+    rule.request.kind = ErrorKind::max;
     for (Measurement& one : experiment.measurements)
         one.error.max = 10.0 * one.error.rms;
     rule.request.max_error = 0.6;
@@ -198,6 +212,7 @@ TEST(Recommended, NamesTheStatisticAndTheRangeOfAnError) {
 
 TEST(Recommended, KeepsNoLimitIfTheReferenceIsUnknown) {
     RecommendationRule rule;
+    rule.request.kind = ErrorKind::rms;
     rule.reference = "the unknown loss of the file's JPEG compression";
     rule.is_reference_unknown = true;
     EXPECT_THAT(recommended(usual(), rule).description,
@@ -223,6 +238,7 @@ TEST(Recommended, WithoutTimesMinimizesBytesThenWork) {
     }
     const std::vector<double> nominal_costs = {5.0, 20.0, 10.0, 1.0};
     RecommendationRule rule;
+    rule.request.kind = ErrorKind::rms;
     rule.nominal_costs = nominal_costs;
     rule.request.max_error = 0.5;
     EXPECT_EQ(recommended(experiment, rule).method, 2U);

@@ -353,6 +353,14 @@ TEST(BumpExperiment, ExpectedErrorCombinesMapAndConversion) {
         EXPECT_GE(upper.map, error.map);
         EXPECT_EQ(upper.added, error.added);
         EXPECT_NEAR(error.total() / known.measurements[i].error.rms, 1.0, 0.3) << i;
+        for (const ErrorKind kind : {ErrorKind::mean, ErrorKind::p99}) {
+            const ExpectedError other =
+                expected_error(guess.reference, guess.measurements[i], kind);
+            EXPECT_NEAR(other.total() / (known.measurements[i].error.*figure_of(kind)), 1.0, 0.35)
+                << i << enum_name(kind);
+            EXPECT_GE(expected_error_upper(guess.reference, guess.measurements[i], kind).total(),
+                      other.total());
+        }
     }
     // The added error of many methods is far below a limit that no total error meets.
     const double limit = 0.5 * guess.reference.reference_degrees;

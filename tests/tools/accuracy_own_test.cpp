@@ -118,7 +118,7 @@ TEST(AccuracyOwn, JpegFilesHaveAnUnknownError) {
     EXPECT_THAT(result.out, Not(HasSubstr("expected")));
     const ProgramResult bounded = workplace.run(line + " --max-error 90");
     EXPECT_EQ(bounded.exit_code, 1);
-    EXPECT_THAT(bounded.out, HasSubstr("no method is known to be within 90 degrees (RMS)"));
+    EXPECT_THAT(bounded.out, HasSubstr("no method is known to be within 90 degrees (99 %)"));
 }
 
 TEST_LABELS(not_sanitized);
@@ -130,7 +130,7 @@ TEST(AccuracyOwn, UnreachableLimitExitsWith1) {
     const ProgramResult strict = workplace.run(line + "0");
     EXPECT_EQ(strict.exit_code, 1);
     EXPECT_THAT(strict.out,
-                HasSubstr("no method is within 0 degrees (RMS): the smallest error is "));
+                HasSubstr("no method is within 0 degrees (99 %): the smallest error is "));
 }
 
 TEST_LABELS(not_sanitized);
@@ -156,7 +156,7 @@ TEST(AccuracyOwn, ABoundIsHeldAgainstTheErrorOfTheMapToo) {
     const ProgramResult bounded = workplace.run(line + "0.5");
     EXPECT_EQ(bounded.exit_code, 1);
     const auto finding = json::parse(bounded.out)["experiments"][0]["finding"].get<std::string>();
-    EXPECT_THAT(finding, HasSubstr("no method is within 0.5 degrees (RMS)"));
+    EXPECT_THAT(finding, HasSubstr("no method is within 0.5 degrees (99 %)"));
     EXPECT_THAT(finding, HasSubstr("(the map itself "));
 }
 
@@ -283,7 +283,7 @@ TEST(OwnRefusal, IsOneLine) {
                      {"relief-accuracy own square.obj --size 64", 2,
                       "--size: applies only to a pair, --high and --low"},
                      {"relief-accuracy own square.obj --max-error-kind max", 2,
-                      "--max-error-kind: requires --max-error (give --max-error DEG)"},
+                      "--max-error-kind: has no effect without --max-error (give --max-error DEG)"},
                      {"relief-accuracy own square.obj --no-times --max-time 3", 2,
                       "--no-times and --max-time contradict each other"},
                      {"relief-accuracy own other.obj --truth file --no-times", 1,

@@ -61,9 +61,9 @@ TEST_F(BakeAccuracy, IncreasesSamplesAndBitsUntilTheErrorIsWithinTheLimit) {
     const json tight = baked("--max-error 0.1");
     EXPECT_GT(tight["selected"]["samples"].get<int>(), 1);
     EXPECT_EQ(tight["selected"]["bits"], 16);
-    EXPECT_LE(tight["selected"]["rms"].get<double>(), 0.1);
+    EXPECT_LE(tight["selected"]["p99"].get<double>(), 0.1);
     const json& before = tight["steps"][tight["steps"].size() - 4];
-    EXPECT_GT(before["rms"].get<double>(), 0.1);
+    EXPECT_GT(before["p99"].get<double>(), 0.1);
     const auto said = read_image_info(workplace / "out/map.png").metadata;
     EXPECT_EQ(said.at("relief:bake"),
               fmt::format("--samples {} --space tangent", tight["selected"]["samples"].get<int>()));
@@ -103,7 +103,8 @@ TEST_F(BakeAccuracy, FailsWithTheMinimumErrorOfAllChoices) {
     const std::string rounding = error_of("map.png --max-error 0.05 --bits 8");
     EXPECT_THAT(
         rounding,
-        HasSubstr("no choice of samples and bits is within 0.05 degrees (RMS): the minimum is 0."));
+        HasSubstr(
+            "no choice of samples and bits is within 0.05 degrees (99 %): the minimum is 0."));
     EXPECT_THAT(rounding, HasSubstr(" 8 bit; rounding to 8 bits alone causes 0."));
     EXPECT_THAT(rounding, HasSubstr("(16 bits are within the limit, with 0.0"));
     EXPECT_THAT(rounding, HasSubstr(": give --bits 16)"));
@@ -116,11 +117,11 @@ TEST_F(BakeAccuracy, FailsWithTheMinimumErrorOfAllChoices) {
     EXPECT_LE(min_in(floats), min_in(both));
     // The minimum errors of the messages can be reached.
     const json eight = baked(fmt::format("--max-error {} --bits 8", 1.02 * min_in(rounding)));
-    EXPECT_LE(eight["selected"]["rms"].get<double>(), 1.02 * min_in(rounding));
+    EXPECT_LE(eight["selected"]["p99"].get<double>(), 1.02 * min_in(rounding));
     const json sixteen = baked(fmt::format("--max-error {}", 1.02 * min_in(both)));
     EXPECT_EQ(sixteen["selected"]["samples"], 256);
     EXPECT_LT(min_in(both),
-              0.5 * baked("--max-error 1 --samples 16 --bits 16")["selected"]["rms"].get<double>());
+              0.5 * baked("--max-error 1 --samples 16 --bits 16")["selected"]["p99"].get<double>());
     std::filesystem::remove(workplace / "out/map.png");
     std::filesystem::remove(workplace / "out/report.json");
     const ProgramResult result = workplace.run(
@@ -170,11 +171,11 @@ TEST_F(BakeAccuracy, ComparesEverySampleCountAndDepth) {
 
 TEST_F(BakeAccuracy, Uses256SamplesIfFewerAreNotEnough) {
     const json few = baked("--max-error 10 --samples 64 --bits 16");
-    const double bound = 0.6 * few["selected"]["rms"].get<double>();
+    const double bound = 0.6 * few["selected"]["p99"].get<double>();
     const json report = baked(fmt::format("--max-error {}", bound));
     EXPECT_EQ(report["selected"]["samples"], 256);
     EXPECT_EQ(report["selected"]["bits"], 16);
-    EXPECT_LE(report["selected"]["rms"].get<double>(), bound);
+    EXPECT_LE(report["selected"]["p99"].get<double>(), bound);
     // The reference has more samples than the map, so the error is that of the samples, not 0.
     EXPECT_EQ(report["reference"]["samples"], 1024);
     EXPECT_GT(report["selected"]["sampling"].get<double>(), 0.1 * bound);

@@ -50,7 +50,7 @@ TEST(ConvertToTexture, AllLevelsAreInOneFileAndTheirErrorsAreStated) {
         run_texture(workplace, "map.png out/m.ktx2 --mips --zstd 9 --report out/r.json");
     EXPECT_EQ(workplace.outputs(), "m.ktx2 r.json");
     EXPECT_THAT(result.out, HasSubstr("bc5, quality normal, green up"));
-    EXPECT_THAT(result.out, HasSubstr("level 4, 1 x 1: error "));
+    EXPECT_THAT(result.out, HasSubstr("level 4, 1 x 1: mean error "));
     const GpuTexture texture = read_texture(workplace / "out/m.ktx2");
     EXPECT_EQ(texture.format, TextureFormat::bc5);
     EXPECT_EQ(texture.levels.size(), 5U);
@@ -96,10 +96,10 @@ TEST(ConvertToTexture, CheckStatesTheErrorOfEachLevelAgainstTheExactMap) {
                 test::image_of<std::uint8_t>(3, {128, 128, 255, 128, 128, 255, 200, 128, 230}));
     run_texture(workplace, "flat.png out/f.ktx2 --format rg16");
     EXPECT_THAT(workplace.run("relief-bake check out/f.ktx2 --exact flat.png").out,
-                HasSubstr("error 0.001 degrees (99 %: 0.001, maximum: 0.001)"));
+                HasSubstr("mean error 0.001 degrees (99 %: 0.001, maximum: 0.001)"));
     // A map that is compared with itself has no error; the direction of green counts.
     const ProgramResult same = workplace.run("relief-bake check map.png --exact map.png");
-    EXPECT_THAT(same.out, HasSubstr("level 0, 20 x 12: error 0.000 degrees"));
+    EXPECT_THAT(same.out, HasSubstr("level 0, 20 x 12: mean error 0.000 degrees"));
     const json turned =
         json::parse(workplace.run("relief-bake check map.png --exact map.png --green down --json")
                         .out)["files"][0]["exact"]["levels"][0];
@@ -184,9 +184,15 @@ TEST(ConvertToTexture, MaxErrorChoosesTheSmallestFormat) {
         return report["texture_format"].get<std::string>() + " " +
                report["quality"].get<std::string>();
     };
-    EXPECT_EQ(chosen("2"), "bc5 fast");
-    EXPECT_EQ(chosen("0.2"), "rg8 normal");
+    EXPECT_EQ(chosen("2 --max-error-kind mean"), "bc5 fast");
+    EXPECT_EQ(chosen("0.2 --max-error-kind mean"), "rg8 normal");
     EXPECT_EQ(chosen("0.01"), "rg16 normal");
+    // 99 % of the texels are within the limit.
+    for (const char* limit : {"6", "4", "2", "1", "0.5"}) {
+        chosen(limit);
+        const json report = json::parse(workplace.read("out/r.json"));
+        EXPECT_LE(report["levels"][0]["error"]["p99"].get<double>(), std::stod(limit));
+    }
     EXPECT_EQ(chosen("2 --quality best"), "bc5 best");
     EXPECT_EQ(chosen("1 --format rgba16"), "rgba16 normal");
 }
@@ -248,6 +254,10 @@ TEST(ConvertToTexture, Refusals) {
         workplace, "relief-bake", "old.png",
         {{"relief-bake convert map.png out/m.png --format bc5", 2,
           "--format: has no effect without an output file .ktx2 or .dds"},
+         {"relief-bake convert map.png out/m.png --max-error-kind max", 2,
+          "--max-error-kind: has no effect without an output file .ktx2 or .dds"},
+         {"relief-bake convert map.png out/m.ktx2 --max-error-kind max", 2,
+          "--max-error-kind: has no effect without --max-error"},
          {"relief-bake convert map.png out/m.dds --zstd 3", 2, "--zstd: compresses .ktx2 files"},
          {"relief-bake convert map.png out/m.ktx2 --bits 8", 2,
           "--bits, --half: --format sets the bits of textures"},
@@ -256,7 +266,7 @@ TEST(ConvertToTexture, Refusals) {
          {"relief-bake convert map.png out/m.ktx2 --mips --mip-lengths", 2,
           "--mip-lengths: textures store no lengths"},
          {"relief-bake convert map.png out/m.ktx2 --format bc5 --max-error 0.001", 2,
-          "--max-error 0.001: the smallest mean error of the formats is"},
+          "--max-error 0.001: the smallest error of the formats is"},
          {"relief-bake convert alpha.png out/m.ktx2", 2,
           "--format bc5: stores no alpha, which the map has"}});
 }

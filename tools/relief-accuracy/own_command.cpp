@@ -22,6 +22,7 @@
 #include "accuracy_report.h"
 #include "commands.h"
 #include "common/command.h"
+#include "common/error_bound.h"
 #include "common/model_file.h"
 #include "common/normal_map_input.h"
 #include "common/options.h"
@@ -353,8 +354,7 @@ std::vector<AssetExperiment> measure(const AssetInput& input, const AssetRequest
 
 struct AssetCommandOptions {
     AssetRequest request;
-    std::optional<double> max_error;
-    std::optional<ErrorKind> max_error_kind;
+    ErrorBound bound;
     std::optional<double> max_milliseconds;
     ExperimentOptions how;
 };
@@ -364,8 +364,7 @@ constexpr std::size_t max_rows = 24;
 
 void check(const AssetCommandOptions& options) {
     check(options.how);
-    if (options.max_error_kind && !options.max_error)
-        throw UsageError("--max-error-kind: requires --max-error", "give --max-error DEG");
+    check(options.bound);
     if (options.how.no_times && options.max_milliseconds)
         throw UsageError("--no-times and --max-time contradict each other");
 }
@@ -375,12 +374,9 @@ std::string command_for(const AssetCommandOptions& options) {
     for (const std::filesystem::path& file : options.request.files)
         command += " " + quoted(file);
     command += options_text(options.request);
-    if (options.max_error) command += fmt::format(" --max-error {:g}", *options.max_error);
-    if (options.max_error_kind) {
-        constexpr std::array words = {"rms", "p99", "max"};
-        command += fmt::format(" --max-error-kind {}",
-                               words.at(static_cast<std::size_t>(*options.max_error_kind)));
-    }
+    if (options.bound.degrees) command += fmt::format(" --max-error {:g}", *options.bound.degrees);
+    if (options.bound.kind)
+        command += std::string(" --max-error-kind ") + enum_name(*options.bound.kind);
     if (options.max_milliseconds)
         command += fmt::format(" --max-time {:g}", *options.max_milliseconds);
     return command + effort_options(options.how);
@@ -417,8 +413,8 @@ AssetOptions asset_options(const AssetCommandOptions& options, Stages& stages) {
         stages.show_progress(progress.title, 0.0);
     };
     own.command = command_for(options);
-    own.request.max_error = options.max_error;
-    own.request.figure = figure_of(options.max_error_kind.value_or(ErrorKind::rms));
+    own.request.max_error = options.bound.degrees;
+    own.request.kind = options.bound.statistic();
     if (options.max_milliseconds) own.request.max_seconds = 1e-3 * *options.max_milliseconds;
     return own;
 }
@@ -451,7 +447,7 @@ ExitCode run(const AssetCommandOptions& options) {
         std::fflush(out());
     }
     finish_report(options.how, std::move(report), false);
-    const bool has_limits = options.max_error || options.max_milliseconds;
+    const bool has_limits = options.bound.degrees || options.max_milliseconds;
     return has_limits && !is_within_limits ? ExitCode::failed : ExitCode::done;
 }
 
@@ -506,17 +502,13 @@ void add_input_options(CLI::App& app, AssetRequest& request) {
 
 void add_limit_options(CLI::App& app, AssetCommandOptions& options) {
     const char* group = "Recommendation; by default the method beyond which more time gains little";
-    add_number(app, "--max-error", "DEG", options.max_error, {0.0, 180.0, "degrees"},
-               "Recommend the cheapest method whose expected error is within this limit. The "
-               "expected error includes the error of the map or model itself; if that is a range, "
-               "its lower end counts; if it is unknown, as for JPEG files, no method is within a "
-               "limit. Without times: the method that stores the fewest bytes, then the one with "
-               "the fewest operations. Exit with 1 if an experiment has no such method.")
-        .group(group);
-    add_choice(app, "--max-error-kind", options.max_error_kind, enum_choices<ErrorKind>(),
-               "The error figure of --max-error: root mean square, 99th percentile, or maximum. "
-               "Default: rms.")
-        .group(group);
+    add_error_bound(
+        app, options.bound, group,
+        "Recommend the cheapest method whose expected error is within this limit. The expected "
+        "error includes the error of the map or model itself; if that is a range, its lower end "
+        "counts; if it is unknown, as for JPEG files, no method is within a limit. Without times: "
+        "the method that stores the fewest bytes, then the one with the fewest operations. Exit "
+        "with 1 if an experiment has no such method.");
     add_number(app, "--max-time", "MS", options.max_milliseconds, {0.0, 1e9, "milliseconds"},
                "Recommend the most accurate method within this time.")
         .group(group);
@@ -533,7 +525,7 @@ Command add_own_command(CLI::App& tool) {
     add_experiment_options(app, options->how);
     set_examples(
         app, {"relief-accuracy own data/vase.obj --quick",
-              "relief-accuracy own data/bricks-height.png --strength 12 --max-error 2 --quick",
+              "relief-accuracy own data/bricks-height.png --strength 12 --max-error 4 --quick",
               "relief-mesh subdivide data/vase.obj out/high.obj --levels 2",
               "relief-accuracy own --high out/high.obj --low data/vase.obj --size 64 --repeats 3",
               "relief-accuracy own data/vase.obj --crease 40 --no-times --output out/vase"});

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "commands.h"
+#include "common/error_bound.h"
 #include "common/map_kind.h"
 #include "common/material_maps.h"
 #include "common/options.h"
@@ -35,12 +36,11 @@ struct BumpAccuracyRequest {
     std::optional<Arithmetic> precision;
     bool destaircase = false;
     Grain grain = Grain::automatic;
-    std::optional<double> max_error;        ///< Of the map and the conversion together.
-    std::optional<double> max_added_error;  ///< Of the conversion alone.
-    std::optional<ErrorKind> max_error_kind;
+    ErrorBound bound;                       ///< Of the map and the conversion together.
+    std::optional<double> max_added_error;  ///< Of the conversion alone, in the same statistic.
     bool compare = false;
 
-    [[nodiscard]] bool has_limit() const { return max_error || max_added_error; }
+    [[nodiscard]] bool has_limit() const { return bound.degrees || max_added_error; }
     [[nodiscard]] bool needs_experiment() const { return compare || has_limit(); }
 };
 
@@ -83,11 +83,9 @@ struct BumpConversion {
 };
 
 void check(const BumpAccuracyRequest& request, bool slope_moments, bool half) {
-    if (request.max_error_kind && !request.has_limit())
-        throw UsageError("--max-error-kind: has no effect without --max-error",
-                         "give --max-error DEG");
+    check(request.bound, request.max_added_error.has_value());
     if (!request.needs_experiment()) return;
-    const std::string option = request.max_error         ? "--max-error"
+    const std::string option = request.bound.degrees     ? "--max-error"
                                : request.max_added_error ? "--max-added-error"
                                                          : "--compare";
     if (request.compare && request.has_limit())
@@ -232,12 +230,12 @@ std::vector<BumpMethod> methods_for(const BumpAccuracyRequest& request, int radi
 }
 
 /// The message if no method is within the limits, with the smallest possible error and a remedy.
-std::string limit_message(const BumpAccuracyRequest& request, const BumpExperiment& experiment,
-                          ErrorKind kind) {
+std::string limit_message(const BumpAccuracyRequest& request, const BumpExperiment& experiment) {
+    const ErrorKind kind = request.bound.statistic();
     const BumpMeasurement* best = most_accurate(experiment, kind);
     const ExpectedError error = expected_error(experiment.reference, *best, kind);
     const std::string method = method_text(best->method);
-    const char* const kind_name = kind == ErrorKind::rms ? "RMS" : "maximum";
+    const char* const kind_name = statistic_name(kind);
     const bool steps_remain = !request.destaircase && experiment.reference.method->destaircased;
     const char* const hint = steps_remain ? " (--destaircase reduces it)" : "";
     if (request.max_added_error && error.added > *request.max_added_error) {
@@ -251,18 +249,18 @@ std::string limit_message(const BumpAccuracyRequest& request, const BumpExperime
             "no method is known to be within {:g} degrees: the map has too few "
             "texels to estimate its own error (limit only the added error with "
             "--max-added-error)",
-            *request.max_error);
+            *request.bound.degrees);
     }
-    if (error.map > *request.max_error) {
+    if (error.map > *request.bound.degrees) {
         return fmt::format(
             "no method is within {:g} degrees ({}): the map itself has an expected "
             "error of {:.3g} ({}), and {} adds {:.3g} (use a better map, or limit "
             "only the added error with --max-added-error){}",
-            *request.max_error, kind_name, error.map, experiment.choice.reason, method, error.added,
-            hint);
+            *request.bound.degrees, kind_name, error.map, experiment.choice.reason, method,
+            error.added, hint);
     }
     return fmt::format("no method is within {:g} degrees ({}): the minimum is {:.3g}, with {}{}",
-                       *request.max_error, kind_name, error.total(), method, hint);
+                       *request.bound.degrees, kind_name, error.total(), method, hint);
 }
 
 /// Reports that the choice of --kernel auto depends on the interpretation of fine grain.
@@ -285,33 +283,33 @@ void report_grain(const KernelChoice& choice, Report& report) {
 
 /// Reports that the limit is between the ends of the range of the expected error.
 void report_range(const BumpAccuracyRequest& request, const BumpExperiment& experiment,
-                  const BumpMeasurement& selected, ErrorKind kind, Report& report) {
-    if (!request.max_error) return;
+                  const BumpMeasurement& selected, Report& report) {
+    if (!request.bound.degrees) return;
+    const ErrorKind kind = request.bound.statistic();
     const double upper = expected_error_upper(experiment.reference, selected, kind).total();
-    if (upper <= *request.max_error) return;
+    if (upper <= *request.bound.degrees) return;
     const char* const unknown = experiment.choice.noise > 0.0
                                     ? "how much detail the noise hides"
                                     : "whether its fine detail is real, and how fine it is";
-    report.add(
-        {"error limit that may be exceeded",
-         "map",
-         fmt::format("the expected error is {:.2g} to {:.2g} degrees ({}), and --max-error "
-                     "is {:g}: the map does not show {}",
-                     expected_error(experiment.reference, selected, kind).total(), upper,
-                     kind == ErrorKind::rms ? "RMS" : "maximum", *request.max_error, unknown),
-         1,
-         {0}});
+    report.add({"error limit that may be exceeded",
+                "map",
+                fmt::format("the expected error is {:.2g} to {:.2g} degrees ({}), and --max-error "
+                            "is {:g}: the map does not show {}",
+                            expected_error(experiment.reference, selected, kind).total(), upper,
+                            statistic_name(kind), *request.bound.degrees, unknown),
+                1,
+                {0}});
 }
 
 /// Selects the fastest method within the limits. \throws InvalidInput if there is none
 void select_within_limit(const BumpAccuracyRequest& request, BumpConversion& conversion,
                          Report& report) {
     BumpAccuracy& accuracy = conversion.accuracy;
-    const ErrorKind kind = request.max_error_kind.value_or(ErrorKind::rms);
-    const BumpMeasurement* selected =
-        cheapest_within(*accuracy.experiment, {request.max_error, request.max_added_error, kind});
-    if (selected == nullptr) throw InvalidInput(limit_message(request, *accuracy.experiment, kind));
-    report_range(request, *accuracy.experiment, *selected, kind, report);
+    const BumpMeasurement* selected = cheapest_within(
+        *accuracy.experiment,
+        {request.bound.degrees, request.max_added_error, request.bound.statistic()});
+    if (selected == nullptr) throw InvalidInput(limit_message(request, *accuracy.experiment));
+    report_range(request, *accuracy.experiment, *selected, report);
     accuracy.selected = *selected;
     conversion.bump.kernel = selected->method.kernel;
     conversion.bump.gaussian_radius = selected->method.gaussian_radius;
@@ -490,19 +488,20 @@ std::vector<std::string> comparison_table(const BumpExperiment& experiment) {
         rows.push_back(&measurement);
     std::stable_sort(rows.begin(), rows.end(),
                      [](const auto* a, const auto* b) { return a->error.rms < b->error.rms; });
-    std::vector<std::string> lines = {
-        fmt::format("{:<12} {:<9} {:<4} {:<6} {:>9} {:>9} {:>9} {:>9} {:>9}", "kernel", "precision",
-                    "bits", "steps", "RMS deg", "max deg", "with map", "time", "MPixel/s")};
+    std::vector<std::string> lines = {fmt::format(
+        "{:<12} {:<9} {:<4} {:<6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}", "kernel", "precision",
+        "bits", "steps", "RMS deg", "99% deg", "max deg", "with map", "time", "MPixel/s")};
     for (const BumpMeasurement* row : rows) {
         lines.push_back(fmt::format(
-            "{:<12} {:<9} {:<4} {:<6} {:>9.3g} {:>9.3g} {:>9.3g} {:>9} {:>9.0f} {}",
+            "{:<12} {:<9} {:<4} {:<6} {:>9.3g} {:>9.3g} {:>9.3g} {:>9.3g} {:>9} {:>9.0f} {}",
             kernel_name(row->method), enum_name(row->method.arithmetic), row->method.bits,
-            row->method.destaircased ? "smooth" : "as is", row->error.rms, row->error.max,
-            expected_error(experiment.reference, *row).total(),
+            row->method.destaircased ? "smooth" : "as is", row->error.rms, row->error.p99,
+            row->error.max, expected_error(experiment.reference, *row, default_error_kind).total(),
             duration(1000.0 * row->seconds.median), row->megapixels_per_second,
             row->is_pareto_optimal ? "*" : ""));
     }
-    lines.emplace_back("RMS and max: added by the conversion; with map: total expected RMS error");
+    lines.emplace_back("RMS, 99% and max: added by the conversion; with map: the total that");
+    lines.emplace_back("--max-error limits, the expected error of 99% of the texels");
     lines.emplace_back("* no other method is both faster and more accurate");
     for (std::string& line : lines)
         line.erase(line.find_last_not_of(' ') + 1);
@@ -515,14 +514,21 @@ std::string expectation_text(const KernelChoice& choice) {
     const char* const range_reason =
         choice.noise > 0.0 ? "; the range depends on how much detail the noise hides"
                            : "; the range depends on whether fine detail is real, and how fine";
-    return fmt::format("{} degrees RMS, {:.2g} at most, from the map and this kernel{}",
-                       expected_error_text(choice), choice.upper_max_degrees,
-                       choice.is_range() ? range_reason : "");
+    const std::string p99 = choice.is_range() ? fmt::format("{:.2g} to {:.2g}", choice.p99_degrees,
+                                                            choice.upper_p99_degrees)
+                                              : fmt::format("{:.2g}", choice.p99_degrees);
+    return fmt::format(
+        "{} degrees RMS, 99 % within {}, {:.2g} at most, from the map and this "
+        "kernel{}",
+        expected_error_text(choice), p99, choice.upper_max_degrees,
+        choice.is_range() ? range_reason : "");
 }
 
-Json measurement_json(const BumpMeasurement& measurement, const BumpReference& reference) {
+/// \param kind  the statistic of the expected error
+Json measurement_json(const BumpMeasurement& measurement, const BumpReference& reference,
+                      ErrorKind kind) {
     const BumpMethod& method = measurement.method;
-    const ExpectedError expected = expected_error(reference, measurement);
+    const ExpectedError expected = expected_error(reference, measurement, kind);
     return {{"kernel", enum_name(method.kernel)},
             {"kernel_radius",
              method.kernel == Kernel::gaussian ? Json(method.gaussian_radius) : Json()},
@@ -535,10 +541,11 @@ Json measurement_json(const BumpMeasurement& measurement, const BumpReference& r
               {"p99", measurement.error.p99},
               {"max", measurement.error.max}}},
             {"expected_degrees",
-             {{"map", expected.map},
+             {{"statistic", enum_name(kind)},
+              {"map", expected.map},
               {"added", expected.added},
               {"total", expected.total()},
-              {"total_upper", expected_error_upper(reference, measurement).total()}}},
+              {"total_upper", expected_error_upper(reference, measurement, kind).total()}}},
             {"milliseconds",
              {{"median", 1000.0 * measurement.seconds.median},
               {"p10", 1000.0 * measurement.seconds.p10},
@@ -564,23 +571,33 @@ void add_kernel_choice(Summary& summary, const KernelChoice& choice) {
     summary.add("expected", expectation_text(choice),
                 {{"expected_degrees", choice.rms_degrees},
                  {"expected_degrees_upper", choice.upper_rms_degrees},
+                 {"expected_p99_degrees", choice.p99_degrees},
+                 {"expected_p99_degrees_upper", choice.upper_p99_degrees},
                  {"grain", grain_json(choice)}});
 }
 
-void add_selected(Summary& summary, const BumpMeasurement& selected,
-                  const BumpReference& reference) {
-    const ExpectedError error = expected_error(reference, selected);
-    summary.add(
-        "selected",
-        {fmt::format("{}: {:.3g} degrees RMS expected", method_text(selected.method),
-                     error.total()),
-         fmt::format("{:.3g} from the map itself, {:.3g} added by this conversion "
-                     "({:.3g} at most), {:.0f} MPixel/s",
-                     error.map, error.added, selected.error.max, selected.megapixels_per_second)},
-        {{"selected", measurement_json(selected, reference)}});
+/// "1.23", or "1.23 to 4.5" if it is a range.
+std::string range_text(double lower, double upper) {
+    return upper > 1.005 * lower ? fmt::format("{:.3g} to {:.3g}", lower, upper)
+                                 : fmt::format("{:.3g}", lower);
 }
 
-void add_experiment(Summary& summary, const BumpExperiment& experiment, bool has_table) {
+void add_selected(Summary& summary, const BumpMeasurement& selected, const BumpReference& reference,
+                  ErrorKind kind) {
+    const ExpectedError error = expected_error(reference, selected, kind);
+    const ExpectedError upper = expected_error_upper(reference, selected, kind);
+    summary.add("selected",
+                {fmt::format("{}: {} degrees ({}) expected", method_text(selected.method),
+                             range_text(error.total(), upper.total()), statistic_name(kind)),
+                 fmt::format("{} from the map itself, {:.3g} added by this conversion "
+                             "({:.3g} at most), {:.0f} MPixel/s",
+                             range_text(error.map, upper.map), error.added, selected.error.max,
+                             selected.megapixels_per_second)},
+                {{"selected", measurement_json(selected, reference, kind)}});
+}
+
+void add_experiment(Summary& summary, const BumpExperiment& experiment, ErrorKind kind,
+                    bool has_table) {
     const BumpReference& reference = experiment.reference;
     summary.add(
         "errors",
@@ -594,11 +611,11 @@ void add_experiment(Summary& summary, const BumpExperiment& experiment, bool has
            {"whole", experiment.is_whole}}}});
     summary.add("", has_table ? comparison_table(experiment) : Summary::Lines{},
                 {{"comparison", json_list(experiment.measurements, [&](const auto& measurement) {
-                      return measurement_json(measurement, reference);
+                      return measurement_json(measurement, reference, kind);
                   })}});
 }
 
-void add_accuracy(Summary& summary, const BumpAccuracy& accuracy) {
+void add_accuracy(Summary& summary, const BumpAccuracy& accuracy, ErrorKind kind) {
     // With a limit, the kernel is not chosen for its accuracy alone.
     if (accuracy.choice && !accuracy.selected) add_kernel_choice(summary, *accuracy.choice);
     const bool has_steps = accuracy.step > 0.0;
@@ -610,8 +627,8 @@ void add_accuracy(Summary& summary, const BumpAccuracy& accuracy) {
                 {{"destaircased_step", has_steps ? Json(accuracy.step) : Json()}});
     if (!accuracy.experiment) return;
     const BumpExperiment& experiment = *accuracy.experiment;
-    if (accuracy.selected) add_selected(summary, *accuracy.selected, experiment.reference);
-    add_experiment(summary, experiment, !accuracy.selected);
+    if (accuracy.selected) add_selected(summary, *accuracy.selected, experiment.reference, kind);
+    add_experiment(summary, experiment, kind, !accuracy.selected);
 }
 
 Summary summary_of(const Job& job, const BumpRequest& request, const BumpConversion& conversion,
@@ -637,7 +654,7 @@ Summary summary_of(const Job& job, const BumpRequest& request, const BumpConvers
                  {"texel_size", {bump.texel.x, bump.texel.y}},
                  {"wrap", name_of(*bump.wrap)},
                  {"seams", std::move(seams)}});
-    add_accuracy(summary, conversion.accuracy);
+    add_accuracy(summary, conversion.accuracy, request.accuracy.bound.statistic());
     summary.add("format", format_text(conversion.format),
                 {{"content", has_moments ? "slope moments" : "normals"},
                  {"xy_only", conversion.format.xy_only},
@@ -731,20 +748,15 @@ void add_accuracy_options(CLI::App& app, BumpAccuracyRequest& request) {
                "Floating-point type of slopes and normals. Default: auto, which is float64 for "
                "32-bit output and float32 otherwise.")
         .group(group);
-    add_number(app, "--max-error", "DEG", request.max_error, {0.0, 180.0, "degrees"},
-               "Choose the fastest kernel, precision and bit depth whose expected error is at most "
-               "DEG degrees; fail if there is none. The expected error is the root sum of squares "
-               "of the error of the map (noise, rounding) and the error that the conversion adds. "
-               "If it is a range, the lower end counts, and an upper end above DEG is a finding.")
-        .group(group);
+    add_error_bound(
+        app, request.bound, group,
+        "Choose the fastest kernel, precision and bit depth whose expected error is at most DEG "
+        "degrees; fail if there is none. The expected error is the root sum of squares of the "
+        "error of the map (noise, rounding) and the error that the conversion adds. If it is a "
+        "range, the lower end counts, and an upper end above DEG is a finding.");
     add_number(app, "--max-added-error", "DEG", request.max_added_error, {0.0, 180.0, "degrees"},
                "The same limit for only the error that the conversion adds: its distance from the "
-               "most accurate known result.")
-        .group(group);
-    const Choices<ErrorKind> kinds = {{"rms", ErrorKind::rms}, {"max", ErrorKind::max}};
-    add_choice(app, "--max-error-kind", request.max_error_kind, kinds,
-               "Error that --max-error and --max-added-error limit: the root mean square or the "
-               "maximum. Default: rms.")
+               "most accurate known result. --max-error-kind applies to it, too.")
         .group(group);
     add_switch(app, "--compare", request.compare,
                "Also measure all methods, and print their errors and times.")
@@ -889,7 +901,7 @@ Command add_bump_command(CLI::App& tool) {
          "relief-bake bump data/bricks-height.png out/bricks-dx.png --green down --bits 8",
          "relief-bake bump data/bricks-height.png out/bricks.exr --kernel central5 --wrap clamp",
          "relief-bake bump data/bricks-height.png out/bricks.png --compare",
-         "relief-bake bump data/bricks-height.png out/bricks.tif --max-error 2",
+         "relief-bake bump data/bricks-height.png out/bricks.tif --max-error 5",
          "relief-bake bump data/bricks-height.png out/wall.png --height 0.02 --texel-size "
          "0.001",
          "relief-bake bump data/bricks-height.png out/bricks-parallax.png --alpha height",

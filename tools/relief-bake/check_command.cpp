@@ -390,10 +390,10 @@ void add_surface_options(CLI::App& app, SurfaceCheckRequest& request) {
     add_fit_options(app, request.bake, "More are a problem.");
     add_texel_options(app, request.bake);
     add_high_normal_map_option(app, request.bake.textures);
-    add_bound_options(app, request.verify.bound,
-                      "Errors above DEG degrees are a problem. Default: it is a problem if the map "
-                      "differs by 1 degree (RMS) from this bake, or if another convention explains "
-                      "the map.");
+    add_error_bound(app, request.verify.bound, "Accuracy",
+                    "Errors above DEG degrees are a problem. Default: it is a problem if the map "
+                    "differs by 1 degree (RMS) from this bake, or if another convention explains "
+                    "the map.");
     add_error_map_option(app, request.verify.error_map);
 }
 

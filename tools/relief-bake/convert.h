@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "common/error_bound.h"
 #include "common/normal_map_input.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/frames.h"
@@ -64,7 +65,7 @@ struct MipOptions {
 struct TextureOptions {
     std::optional<TextureFormat> format;
     std::optional<BlockQuality> quality;
-    std::optional<double> max_error;  ///< Mean of the largest level, in degrees.
+    ErrorBound bound;  ///< Of the largest level.
     std::optional<int> zstd_level;
 };
 

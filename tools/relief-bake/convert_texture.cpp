@@ -122,10 +122,10 @@ void add_texture_options(CLI::App& app, TextureOptions& options) {
     add_choice(app, "--quality", options.quality, enum_choices<BlockQuality>(),
                "Search for block formats: fast, normal or best. Default: normal.")
         .group(group);
-    add_number(app, "--max-error", "DEG", options.max_error, {0.0, 180.0, "degrees"},
-               "Choose the smallest and fastest of bc5, rg8 and rg16, and the quality, whose mean "
-               "error is at most DEG in the largest level. --format or --quality limit the choice.")
-        .group(group);
+    add_error_bound(
+        app, options.bound, group,
+        "Choose the smallest and fastest of bc5, rg8 and rg16, and the quality, whose error is at "
+        "most DEG degrees in the largest level. --format or --quality limit the choice.");
     add_value(app, "--zstd", "LEVEL",
               "Compress .ktx2 with zstd, from 1 (fast) to 22 (small). Default: not compressed.",
               [&](const std::string& subject, const std::string& text) {
@@ -137,10 +137,11 @@ void add_texture_options(CLI::App& app, TextureOptions& options) {
 void check_texture_options(const CLI::App& app, const ConvertRequest& request,
                            const std::filesystem::path& output) {
     if (!is_texture(output)) {
-        refuse_given(app, {"--format", "--quality", "--max-error", "--zstd"},
+        refuse_given(app, {"--format", "--quality", "--max-error", "--max-error-kind", "--zstd"},
                      "an output file .ktx2 or .dds");
         return;
     }
+    check(request.texture.bound);
     const MapOutputOptions& given = request.output;
     if (given.bits || given.half)
         throw UsageError("--bits, --half: --format sets the bits of textures");
@@ -172,9 +173,9 @@ EncodedLevel encode_level(const Image& normals, const std::optional<Image>& alph
 }
 
 std::string level_text(std::size_t level, const LevelError& error) {
-    return fmt::format("level {}, {} x {}: error {:.3f} degrees (99 %: {:.3f}, maximum: {:.3f})",
-                       level, error.width, error.height, error.error.mean, error.error.p99,
-                       error.error.max);
+    return fmt::format(
+        "level {}, {} x {}: mean error {:.3f} degrees (99 %: {:.3f}, maximum: {:.3f})", level,
+        error.width, error.height, error.error.mean, error.error.p99, error.error.max);
 }
 
 ExactMap read_exact_map(const std::filesystem::path& file, const AssumedKinds& assumed) {
@@ -260,7 +261,7 @@ ExactComparison compare_levels(const std::filesystem::path& file, const ExactMap
 TextureEncoding choose_encoding(const TextureOptions& options, const Image& normals) {
     TextureEncoding encoding{options.format.value_or(TextureFormat::bc5),
                              options.quality.value_or(BlockQuality::normal)};
-    if (!options.max_error) return encoding;
+    if (!options.bound.degrees) return encoding;
     std::vector<TextureEncoding> tried(std::begin(tried_encodings), std::end(tried_encodings));
     if (options.format) {
         tried.clear();
@@ -277,13 +278,13 @@ TextureEncoding choose_encoding(const TextureOptions& options, const Image& norm
     double least = 180.0;
     for (const TextureEncoding& each : tried) {
         Report unread;
-        const double error = encode_level(normals, std::nullopt, each, unread).error.mean;
-        if (error <= *options.max_error) return each;
-        least = std::min(least, error);
+        const ErrorStats error = encode_level(normals, std::nullopt, each, unread).error;
+        if (options.bound.allows(error)) return each;
+        least = std::min(least, options.bound.error(error));
     }
     throw UsageError(
-        fmt::format("--max-error {:g}: the smallest mean error of the formats is {:.3g} degrees",
-                    *options.max_error, least));
+        fmt::format("--max-error {:g}: the smallest error of the formats is {:.3g} degrees ({})",
+                    *options.bound.degrees, least, statistic_name(options.bound.statistic())));
 }
 
 std::map<std::string, std::string> texture_metadata(Green green, TextureFormat format) {

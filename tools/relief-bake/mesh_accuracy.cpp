@@ -96,7 +96,7 @@ BakeComparison measure_errors(const Baker& baker, const BakeMapOptions& map,
     if (request.compare) return compare_bakes(baker, map, format);
     BakeSearch search;
     search.max_degrees = request.bound.degrees.value_or(0.0);
-    search.kind = request.bound.kind.value_or(ErrorKind::rms);
+    search.kind = request.bound.statistic();
     search.format = format;
     search.bits = available_depths(request);
     if (request.samples.is_given)
@@ -349,8 +349,9 @@ void add_problems(VerifiedMap& map, const MeshBakeRequest& bake, const BakeModel
             check.convention.tried));
     }
     if (!bound.allows(check.error)) {
-        map.problems.push_back(fmt::format("the error is {:.3g} degrees, more than the limit of {}",
-                                           bound.error(check.error), to_string(bound)));
+        map.problems.push_back(fmt::format(
+            "the error is {:.3g} degrees ({}), more than the limit of {}", bound.error(check.error),
+            statistic_name(bound.statistic()), to_string(bound)));
     }
     const double missed = missed_percent(check.missed, check.error.count + check.frameless);
     if (check.error.count == 0) {

@@ -466,9 +466,9 @@ std::vector<std::string> step_lines(const MeshBakeRequest& request,
         const auto bytes = std::uintmax_t{3} * static_cast<unsigned>(bake.format.bits / 8) *
                            static_cast<unsigned>(request.size.x) *
                            static_cast<unsigned>(request.size.y);
-        const std::string error =
-            fmt::format("{:.3g} in {} bit ({} at most)", request.bound.error(bake.error),
-                        bake.format.bits, byte_size(bytes));
+        const std::string error = fmt::format(
+            "{:.3g} degrees ({}) in {} bit (at most {})", request.bound.error(bake.error),
+            statistic_name(request.bound.statistic()), bake.format.bits, byte_size(bytes));
         if (is_new) {
             lines.push_back(fmt::format(
                 "{}, {} rays in {}: {}",

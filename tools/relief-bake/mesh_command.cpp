@@ -188,10 +188,10 @@ void add_accuracy_options(CLI::App& app, MeshBakeRequest& request) {
                "print the errors and their causes.")
         .group("Accuracy");
     add_error_map_option(app, request.error_map);
-    add_bound_options(app, request.bound,
-                      "Increase samples and bits (unless they are given) until the error is at "
-                      "most DEG degrees; fail if it never is. The error is measured on this map, "
-                      "against the mean over each texel.");
+    add_error_bound(app, request.bound, "Accuracy",
+                    "Increase samples and bits (unless they are given) until the error is at "
+                    "most DEG degrees; fail if it never is. The error is measured on this map, "
+                    "against the mean over each texel.");
     add_switch(app, "--compare", request.compare,
                "Also bake with all numbers of samples, bits and dither methods, in memory, and "
                "print their errors and times.")
@@ -544,16 +544,6 @@ void add_high_normal_map_option(CLI::App& app, HighTextureOptions& options) {
                             "their materials (glTF, MTL's norm).");
 }
 
-void add_bound_options(CLI::App& app, ErrorBound& bound, const std::string& description) {
-    const std::string group = "Accuracy";
-    add_number(app, "--max-error", "DEG", bound.degrees, {0.0, 180.0, "degrees"}, description)
-        .group(group);
-    add_choice(app, "--max-error-kind", bound.kind, enum_choices<ErrorKind>(),
-               "Error that --max-error limits: the root mean square, the error that 99 % of the "
-               "texels do not exceed (p99), or the maximum. Default: rms.")
-        .group(group);
-}
-
 void add_error_map_option(CLI::App& app, std::optional<std::filesystem::path>& file) {
     add_path(app, "--error-map", file,
              "Write the error of every texel: .png from black (no error) to pale yellow (the "
@@ -575,18 +565,6 @@ int bits_of(const LayerOptions& options, LayerKind kind) {
     return bits;
 }
 
-double ErrorBound::error(const ErrorStats& summary) const {
-    return summary.*figure_of(kind.value_or(ErrorKind::rms));
-}
-
-std::string to_string(const ErrorBound& bound) {
-    const ErrorKind kind = bound.kind.value_or(ErrorKind::rms);
-    return fmt::format("{:g} degrees ({})", bound.degrees.value_or(0.0),
-                       kind == ErrorKind::rms   ? "RMS"
-                       : kind == ErrorKind::p99 ? "99 % of the texels"
-                                                : "maximum");
-}
-
 void check_bake_options(const MeshBakeRequest& request) {
     if (request.cage) {
         readable_format(*request.cage);
@@ -598,12 +576,6 @@ void check_bake_options(const MeshBakeRequest& request) {
         throw UsageError("--hardness: has no effect without --rays averaged");
     if (request.sample_angle && !request.samples.is_auto)
         throw UsageError("--sample-angle: has no effect without --samples auto");
-}
-
-void check(const ErrorBound& bound) {
-    if (bound.kind && !bound.degrees)
-        throw UsageError("--max-error-kind: has no effect without --max-error",
-                         "give --max-error DEG");
 }
 
 void check_error_map(const std::optional<std::filesystem::path>& file,

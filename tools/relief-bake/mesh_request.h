@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "commands.h"
+#include "common/error_bound.h"
 #include "common/material_maps.h"
 #include "relief/mesh/bake.h"
 #include "relief/mesh/bake_check.h"
-#include "relief/mesh/statistics.h"
 
 namespace relief::tools {
 
@@ -48,21 +48,6 @@ struct LayerOptions {
 /// The bit depth of a layer: 8, 16, or 32 for floats.
 /// \throws UsageError if the file format cannot store it
 int bits_of(const LayerOptions& options, LayerKind kind);
-
-/// A limit of the error.
-struct ErrorBound {
-    std::optional<double> degrees;
-    std::optional<ErrorKind> kind;  ///< Absent: rms.
-
-    /// The error that the limit applies to.
-    [[nodiscard]] double error(const ErrorStats& summary) const;
-    [[nodiscard]] bool allows(const ErrorStats& summary) const {
-        return !degrees || error(summary) <= *degrees;
-    }
-};
-
-/// "0.5 degrees (RMS)"
-std::string to_string(const ErrorBound& bound);
 
 struct PreviewOptions {
     std::optional<std::filesystem::path> file;
@@ -123,16 +108,10 @@ void add_fit_options(CLI::App& app, MeshBakeRequest& request, const std::string&
 
 void add_high_normal_map_option(CLI::App& app, HighTextureOptions& options);
 
-/// Adds --max-error and --max-error-kind. \param description  the effect of the limit
-void add_bound_options(CLI::App& app, ErrorBound& bound, const std::string& description);
-
 void add_error_map_option(CLI::App& app, std::optional<std::filesystem::path>& file);
 
 /// \throws UsageError if options of rays and texels contradict each other, or have no effect
 void check_bake_options(const MeshBakeRequest& request);
-
-/// \throws UsageError if a kind is given without a limit
-void check(const ErrorBound& bound);
 
 /// \param files  the other files of the command
 /// \throws UsageError if the error map has another format or is one of these files; FileError if

@@ -412,10 +412,11 @@ void add_decimate_options(CLI::App& app, DecimateCommand& command) {
                   command.ratio = parse_ratio(subject, text);
               })
         .group(limits);
-    add_number(app, "--max-error", "E", command.options.max_error, {0.0, Range().max, ""},
-               "Stop while no point of IN is farther than E from OUT, and no point of OUT farther "
-               "than E from IN, in the unit of the model (relief-mesh info prints its size). The "
-               "distance is measured several times, so this takes longer.")
+    add_number(
+        app, "--max-error", "E", command.options.max_error, {0.0, Range().max, ""},
+        "Maximum distance: stop while no point of IN is farther than E from OUT, and no point "
+        "of OUT farther than E from IN, in the unit of the model (relief-mesh info prints "
+        "its size). The distance is measured several times, so this takes longer.")
         .group(limits);
     const std::string preserved = "What is preserved";
     add_number(

@@ -16,6 +16,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <numbers>
@@ -283,11 +284,68 @@ double mean_deviation(const NoiseByHeight& noise, std::span<const HeightTile> ti
     return std::sqrt(squares / count);
 }
 
-/// Sums of squared angles in radians.
-struct SquaredAngles {
-    double sum = 0.0;
-    double count = 0.0;
-    double max = 0.0;
+/// Statistics of squared angles in radians.
+class SquaredAngles {
+  public:
+    void add(double square) {
+        sum_ += square;
+        sum_of_angles_ += std::sqrt(square);
+        max_ = std::max(max_, square);
+        count_ += 1.0;
+        if (bins_.empty()) bins_.resize(bin_count, 0);
+        ++bins_[bin_of(square)];
+    }
+
+    void add(const SquaredAngles& other) {
+        sum_ += other.sum_;
+        sum_of_angles_ += other.sum_of_angles_;
+        max_ = std::max(max_, other.max_);
+        count_ += other.count_;
+        if (bins_.empty()) bins_.resize(bin_count, 0);
+        for (std::size_t i = 0; i < other.bins_.size(); ++i)
+            bins_[i] += other.bins_[i];
+    }
+
+    [[nodiscard]] KernelPrediction prediction(Kernel kernel, int radius) const {
+        constexpr double degrees = 180.0 / std::numbers::pi;
+        KernelPrediction result{kernel, radius};
+        if (count_ == 0.0) return result;
+        result.rms_degrees = std::sqrt(sum_ / count_) * degrees;
+        result.max_degrees = std::sqrt(max_) * degrees;
+        result.mean_degrees = sum_of_angles_ / count_ * degrees;
+        result.p99_degrees = std::sqrt(percentile_99()) * degrees;
+        return result;
+    }
+
+  private:
+    // The bins are those of the upper bits of a float: its exponent and 5 bits of its mantissa.
+    static constexpr int shift = 18;
+    static constexpr std::uint32_t lowest = std::bit_cast<std::uint32_t>(0x1p-60F) >> shift;
+    static constexpr std::size_t bin_count =
+        (std::bit_cast<std::uint32_t>(16.0F) >> shift) - lowest + 1;
+
+    static std::size_t bin_of(double square) {
+        const std::uint32_t bits = std::bit_cast<std::uint32_t>(static_cast<float>(square));
+        return std::clamp<std::size_t>(bits >> shift, lowest, lowest + bin_count - 1) - lowest;
+    }
+
+    /// Returns the upper end of the bin in which the smallest 99 % end.
+    [[nodiscard]] double percentile_99() const {
+        double count = 0.0;
+        for (std::size_t i = 0; i < bins_.size(); ++i) {
+            count += bins_[i];
+            if (count < 0.99 * count_) continue;
+            const auto next = static_cast<std::uint32_t>(lowest + i + 1) << shift;
+            return std::min<double>(std::bit_cast<float>(next), max_);
+        }
+        return max_;
+    }
+
+    double sum_ = 0.0;
+    double sum_of_angles_ = 0.0;
+    double max_ = 0.0;
+    double count_ = 0.0;
+    std::vector<std::uint32_t> bins_;
 };
 
 /// Sums the squared angles between float normals and the reference. A series of the chord length
@@ -306,9 +364,7 @@ SquaredAngles squared_angles(const Image& normals, std::span<const glm::dvec3> r
                 glm::dvec3(n[3 * i], n[3 * i + 1], n[3 * i + 2]) - reference[i];
             const double square = glm::dot(chord, chord);
             const double angle_per_chord = 1.0 + square * (1.0 / 24.0 + square * (3.0 / 640.0));
-            result.sum += square * angle_per_chord * angle_per_chord;
-            result.max = std::max(result.max, square * angle_per_chord * angle_per_chord);
-            result.count += 1.0;
+            result.add(square * angle_per_chord * angle_per_chord);
         }
     }
     return result;
@@ -580,8 +636,12 @@ KernelPrediction KernelErrorModel::predict_upper(const KernelPrediction& predict
     const KernelPrediction upper_sample =
         upper.predict(prediction.kernel, prediction.gaussian_radius);
     KernelPrediction result = prediction;
-    const double added = quadrature_difference(upper_sample.rms_degrees, sample.rms_degrees);
-    result.rms_degrees = std::sqrt(result.rms_degrees * result.rms_degrees + added * added);
+    for (double KernelPrediction::*error :
+         {&KernelPrediction::mean_degrees, &KernelPrediction::rms_degrees,
+          &KernelPrediction::p99_degrees}) {
+        const double added = quadrature_difference(upper_sample.*error, sample.*error);
+        result.*error = std::sqrt(result.*error * result.*error + added * added);
+    }
     result.max_degrees = std::max(result.max_degrees, upper_sample.max_degrees);
     return result;
 }
@@ -601,14 +661,9 @@ KernelPrediction KernelErrorModel::predict(Kernel kernel, int radius) const {
         }
     });
     SquaredAngles all;
-    for (const SquaredAngles& part : part_errors) {
-        all.sum += part.sum;
-        all.count += part.count;
-        all.max = std::max(all.max, part.max);
-    }
-    const double radians = all.count > 0.0 ? std::sqrt(all.sum / all.count) : 0.0;
-    const double degrees = 180.0 / std::numbers::pi;
-    return {kernel, radius, radians * degrees, std::sqrt(all.max) * degrees};
+    for (const SquaredAngles& part : part_errors)
+        all.add(part);
+    return all.prediction(kernel, radius);
 }
 
 constexpr int radii[] = {1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64};
@@ -788,10 +843,14 @@ KernelChoice choose_kernel(std::span<const Image> parts, const BumpOptions& opti
     choice.gaussian_radius = best.gaussian_radius;
     choice.rms_degrees = best.rms_degrees;
     choice.max_degrees = best.max_degrees;
+    choice.mean_degrees = best.mean_degrees;
+    choice.p99_degrees = best.p99_degrees;
     choice.reason = reason_text(model, options, best);
     const KernelPrediction upper = model.predict_upper(best);
     choice.upper_rms_degrees = std::max(best.rms_degrees, upper.rms_degrees);
     choice.upper_max_degrees = std::max(best.max_degrees, upper.max_degrees);
+    choice.upper_mean_degrees = std::max(best.mean_degrees, upper.mean_degrees);
+    choice.upper_p99_degrees = std::max(best.p99_degrees, upper.p99_degrees);
     if (choice.grain > 0.0) {
         const KernelErrorModel other_model(parts, options, destaircased,
                                            choice.noise > 0.0 ? Grain::detail : Grain::noise);
@@ -800,6 +859,9 @@ KernelChoice choose_kernel(std::span<const Image> parts, const BumpOptions& opti
         if (model.is_only_grain() && grain == Grain::automatic) {
             choice.upper_rms_degrees = std::max(choice.upper_rms_degrees, same_kernel.rms_degrees);
             choice.upper_max_degrees = std::max(choice.upper_max_degrees, same_kernel.max_degrees);
+            choice.upper_mean_degrees =
+                std::max(choice.upper_mean_degrees, same_kernel.mean_degrees);
+            choice.upper_p99_degrees = std::max(choice.upper_p99_degrees, same_kernel.p99_degrees);
         }
     }
     std::size_t texels = 0;
@@ -808,6 +870,8 @@ KernelChoice choose_kernel(std::span<const Image> parts, const BumpOptions& opti
     if (texels < min_texels && choice.rms_degrees > 0.0) {
         choice.rms_degrees = choice.max_degrees = std::numeric_limits<double>::quiet_NaN();
         choice.upper_rms_degrees = choice.upper_max_degrees = choice.rms_degrees;
+        choice.mean_degrees = choice.upper_mean_degrees = choice.rms_degrees;
+        choice.p99_degrees = choice.upper_p99_degrees = choice.rms_degrees;
         choice.reason = fmt::format("{} texel{} are too few to estimate an error", texels,
                                     texels == 1 ? "" : "s");
     }

@@ -66,11 +66,15 @@ struct BumpReference {
     /// The expected RMS error of the reference against the surface from which the map was made, in
     /// degrees. Measured errors do not include it. 0 if the exact normals are known.
     double reference_degrees = 0.0;
-    /// The expected maximum of that error.
+    /// The expected mean of that error, the error that 99 % do not exceed, and the maximum.
+    double reference_mean_degrees = 0.0;
+    double reference_p99_degrees = 0.0;
     double reference_max_degrees = 0.0;
-    /// The upper ends of both, if the map does not show whether detail is real (KernelChoice::
+    /// The upper ends of all, if the map does not show whether detail is real (KernelChoice::
     /// upper_rms_degrees). Not less than the values above.
     double upper_degrees = 0.0;
+    double upper_mean_degrees = 0.0;
+    double upper_p99_degrees = 0.0;
     double upper_max_degrees = 0.0;
     std::string description;  ///< A description for people.
 };
@@ -144,9 +148,8 @@ BumpExperiment measure_bump(const BumpField& field, std::span<const BumpMethod> 
 
 /// Returns the expected error of a measured method against the surface from which the map was made.
 ///
-/// \param kind  of both parts. For ErrorKind::max the root of the sum of squares is an estimate,
-///         because the maxima of both parts seldom occur in the same texel. For ErrorKind::p99 the
-///         part of the reference is its maximum
+/// \param kind  of both parts. Except for ErrorKind::rms, the root of the sum of squares is an
+///         estimate, because large errors of both parts seldom occur in the same texel
 ExpectedError expected_error(const BumpReference& reference, const BumpMeasurement& measurement,
                              ErrorKind kind = ErrorKind::rms);
 
@@ -159,7 +162,7 @@ ExpectedError expected_error_upper(const BumpReference& reference,
 struct ErrorLimits {
     std::optional<double> total;
     std::optional<double> added;
-    ErrorKind kind = ErrorKind::rms;
+    ErrorKind kind = default_error_kind;
 
     /// Returns true if the error is within the limits, and false if it is unknown.
     [[nodiscard]] bool hold(const ExpectedError& error) const {
@@ -186,10 +189,9 @@ enum class CostKind { time, bytes };
 
 /// The limits of a request. Without limits, the knee is recommended, see recommended().
 struct MethodRequest {
-    /// In the unit of the experiment, for the statistic `figure`.
-    std::optional<double> max_error;
-    std::optional<double> max_seconds;  ///< Maximum time in seconds; ignored for CostKind::bytes.
-    double ErrorStats::*figure = &ErrorStats::rms;  ///< The statistic that `max_error` limits.
+    std::optional<double> max_error;      ///< In the unit of the experiment.
+    std::optional<double> max_seconds;    ///< Maximum time in seconds; ignored for CostKind::bytes.
+    ErrorKind kind = default_error_kind;  ///< The statistic that `max_error` limits.
 };
 
 /// The input of recommended(). The spans must be valid until it returns.
@@ -207,6 +209,9 @@ struct RecommendationRule {
     std::string reference = "the reference itself";
     /// The reference has an error of unknown size, so that no limit of the error is kept.
     bool is_reference_unknown = false;
+    /// The error of the reference in the statistic that the request limits. Absent:
+    /// Experiment::reference_error.
+    std::optional<double> limited_reference{};
 };
 
 struct Recommendation {
@@ -219,7 +224,7 @@ struct Recommendation {
     std::string description;
 };
 
-/// Recommends a method. Its error is the root of the sum of squares of Experiment::reference_error
+/// Recommends a method. Its error is the root of the sum of squares of the error of the reference
 /// and the error that the method adds.
 ///
 /// - With `max_error`: the cheapest method whose error is within it (and whose time is within

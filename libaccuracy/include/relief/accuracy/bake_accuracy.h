@@ -98,7 +98,7 @@ BakeComparison compare_bakes(const Baker& baker, const BakeMapOptions& map,
 /// The limit and the choices of select_bake().
 struct BakeSearch {
     double max_degrees = 0.0;
-    ErrorKind kind = ErrorKind::rms;
+    ErrorKind kind = default_error_kind;
     std::optional<BakeSampling> sampling;  ///< If absent: 1, 4, 16, 64 or 256 samples.
     NormalMapFormat format;                ///< All but the bits.
     std::vector<int> bits;                 ///< The permitted ones among 8, 16 and 32, ascending.

@@ -229,6 +229,8 @@ struct KernelPrediction {
     int gaussian_radius = 2;   ///< The radius of Kernel::gaussian.
     double rms_degrees = 0.0;  ///< Expected RMS error of the normals.
     double max_degrees = 0.0;  ///< Expected maximum error over the examined texels.
+    double mean_degrees = 0.0;
+    double p99_degrees = 0.0;  ///< 99 % of the texels have at most this error; exact to 1/64.
 };
 
 /// The interpretation of fine, uniform grain in a height map. The map alone does not distinguish
@@ -252,11 +254,15 @@ struct KernelChoice {
     /// Expected RMS error of the normals. NaN for maps of fewer than 64 texels, which are too small
     /// for an estimate.
     double rms_degrees = 0.0;
-    double max_degrees = 0.0;  ///< Expected maximum error.
-    /// Upper estimates of the RMS and maximum error for properties that the map does not reveal:
-    /// noise that hides or resembles detail, detail smaller than texels, or a map of nothing but
-    /// noise. They are at least the values above.
+    double mean_degrees = 0.0;  ///< Expected mean error.
+    double p99_degrees = 0.0;   ///< Expected error that 99 % of the texels do not exceed.
+    double max_degrees = 0.0;   ///< Expected maximum error.
+    /// Upper estimates of these errors for properties that the map does not reveal: noise that
+    /// hides or resembles detail, detail smaller than texels, or a map of nothing but noise. They
+    /// are at least the values above.
     double upper_rms_degrees = 0.0;
+    double upper_mean_degrees = 0.0;
+    double upper_p99_degrees = 0.0;
     double upper_max_degrees = 0.0;
     std::string reason;  ///< An explanation for people, with figures.
 

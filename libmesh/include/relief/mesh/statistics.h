@@ -50,16 +50,25 @@ struct ErrorStats {
     friend bool operator==(const ErrorStats&, const ErrorStats&) = default;
 };
 
-/// The figure of an error that a limit applies to.
-enum class ErrorKind { rms, p99, max };
+/// The statistic of an error that a limit applies to.
+enum class ErrorKind { mean, rms, p99, max };
 
 template <>
-inline constexpr auto enum_names<ErrorKind> = std::to_array<EnumName<ErrorKind>>(
-    {{"rms", ErrorKind::rms}, {"p99", ErrorKind::p99}, {"max", ErrorKind::max}});
+inline constexpr auto enum_names<ErrorKind> =
+    std::to_array<EnumName<ErrorKind>>({{"mean", ErrorKind::mean},
+                                        {"rms", ErrorKind::rms},
+                                        {"p99", ErrorKind::p99},
+                                        {"max", ErrorKind::max}});
 
-/// Returns the member that holds a figure.
+/// The statistic of limits for angles, unless another one is requested: the error that 99 % of all
+/// places do not exceed. A mean hides rare errors, and a maximum is often that of a single place.
+inline constexpr ErrorKind default_error_kind = ErrorKind::p99;
+
+/// Returns the member that holds a statistic.
 constexpr double ErrorStats::*figure_of(ErrorKind kind) {
     switch (kind) {
+        case ErrorKind::mean:
+            return &ErrorStats::mean;
         case ErrorKind::p99:
             return &ErrorStats::p99;
         case ErrorKind::max:
@@ -68,6 +77,21 @@ constexpr double ErrorStats::*figure_of(ErrorKind kind) {
             break;
     }
     return &ErrorStats::rms;
+}
+
+/// Returns the name of a statistic in sentences: "mean", "RMS", "99 %" or "maximum".
+constexpr const char* statistic_name(ErrorKind kind) {
+    switch (kind) {
+        case ErrorKind::mean:
+            return "mean";
+        case ErrorKind::p99:
+            return "99 %";
+        case ErrorKind::max:
+            return "maximum";
+        case ErrorKind::rms:
+            break;
+    }
+    return "RMS";
 }
 
 /// Computes the statistics of errors.
