@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "relief/mesh/image_file.h"
@@ -52,6 +54,7 @@ TEST(AccuracyJson, ReadsBackAsTheSame) {
     // The pixels of pictures are not read.
     EXPECT_EQ(json_of(again, true).dump(), json_of(report, true).dump());
     EXPECT_EQ(again.machine, report.machine);
+    EXPECT_EQ(again.settings.other_programs, report.settings.other_programs);
     const Experiment& was = report.experiments[0];
     const Experiment& is = again.experiments[0];
     for (std::size_t i = 0; i < 2; ++i) {
@@ -64,6 +67,33 @@ TEST(AccuracyJson, ReadsBackAsTheSame) {
     EXPECT_THAT(is.input_findings, SizeIs(1));
     EXPECT_TRUE(std::isnan(is.charts[0].curves[0].points[0].error));
     EXPECT_EQ(is.charts[0].curves[0].points[1].x, 0.001);
+}
+
+TEST(AccuracyPage, StatesThatTheMachineWasBusy) {
+    const Workplace workplace;
+    AccuracyReport report = sample_report();
+    write_report(workplace / "out", report);
+    EXPECT_THAT(workplace.read("out/report.html"),
+                HasSubstr("used 1.7 of 2 processors: the machine was busy"));
+    report.settings.other_programs = OtherPrograms{0.02, 2};
+    write_report(workplace / "out", report);
+    EXPECT_THAT(workplace.read("out/report.html"), HasSubstr("used 0.02 of 2 processors<"));
+}
+
+TEST(ProcessorUse, ExcludesTheTimeOfThisProcess) {
+    using Clock = std::chrono::steady_clock;
+    constexpr double tolerance = 0.3;  // /proc/stat counts in hundredths of a second.
+    const ProcessorUse use;
+    const Clock::time_point begin = Clock::now();
+    const std::clock_t own_begin = std::clock();
+    while (Clock::now() - begin < std::chrono::milliseconds(300)) {
+    }
+    const std::optional<OtherPrograms> others = use.of_others();
+    const double own = static_cast<double>(std::clock() - own_begin) / CLOCKS_PER_SEC;
+    const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    if (!others) GTEST_SKIP() << "the system does not state it";
+    EXPECT_GE(others->processors, 0.0);
+    EXPECT_LE(others->processors, others->available - own / seconds + tolerance);
 }
 
 TEST(AccuracyJson, HasNoFileNamesWithoutFiles) {

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "processor_use.h"
 #include "relief/accuracy/experiment.h"
 
 namespace relief::tools {
@@ -40,7 +41,8 @@ struct RunSettings {
     bool timed = true;
     std::size_t repeats = 0;  ///< In all passes together.
     std::size_t passes = 1;
-    unsigned threads = 0;  ///< The number of threads behind "all threads".
+    unsigned threads = 0;                           ///< The number of threads behind "all threads".
+    std::optional<OtherPrograms> other_programs{};  ///< Absent: nothing was timed, or unknown.
 };
 
 struct AccuracyReport {

@@ -59,6 +59,7 @@ void prepare(const ExperimentOptions& options);
 /// Completes a report that has its experiments and command, writes it, and prints the end of the
 /// output.
 /// \param draws  whether OpenGL was used; then the report names it
-void finish_report(const ExperimentOptions& options, AccuracyReport report, bool draws);
+void finish_report(const ExperimentOptions& options, AccuracyReport report, bool draws,
+                   const ProcessorUse& use);
 
 }  // namespace relief::tools

@@ -428,6 +428,7 @@ ExitCode run(const AssetCommandOptions& options) {
     AccuracyReport report;
     report.command = own.command;
     bool is_within_limits = true;
+    const ProcessorUse use;
     for (const AssetInput& input : inputs) {
         std::string description;
         std::vector<AssetExperiment> experiments =
@@ -446,7 +447,7 @@ ExitCode run(const AssetCommandOptions& options) {
         if (prints_tables(options.how)) print_text("\n");
         std::fflush(out());
     }
-    finish_report(options.how, std::move(report), false);
+    finish_report(options.how, std::move(report), false, use);
     const bool has_limits = options.bound.degrees || options.max_milliseconds;
     return has_limits && !is_within_limits ? ExitCode::failed : ExitCode::done;
 }

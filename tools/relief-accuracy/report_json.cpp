@@ -31,11 +31,16 @@ Json json_of(const Machine& machine) {
 }
 
 Json json_of(const RunSettings& settings) {
-    return {{"quick", settings.quick},
-            {"timed", settings.timed},
-            {"repeats", settings.repeats},
-            {"passes", settings.passes},
-            {"threads", settings.threads}};
+    Json json = {{"quick", settings.quick},
+                 {"timed", settings.timed},
+                 {"repeats", settings.repeats},
+                 {"passes", settings.passes},
+                 {"threads", settings.threads}};
+    if (const auto& others = settings.other_programs) {
+        json["other_programs"] = {{"processors", others->processors},
+                                  {"available", others->available}};
+    }
+    return json;
 }
 
 Json json_of(const ErrorStats& error) {
@@ -173,11 +178,17 @@ Machine machine_at(const JsonCursor& place) {
 
 RunSettings settings_at(const JsonCursor& place) {
     const auto passes = place.find_value("passes");  // Absent in old reports with one pass.
-    return {.quick = place.at("quick").boolean(),
-            .timed = place.at("timed").boolean(),
-            .repeats = place.at("repeats").unsigned_number(),
-            .passes = passes ? passes->unsigned_number() : 1,
-            .threads = static_cast<unsigned>(place.at("threads").unsigned_number())};
+    RunSettings settings{.quick = place.at("quick").boolean(),
+                         .timed = place.at("timed").boolean(),
+                         .repeats = place.at("repeats").unsigned_number(),
+                         .passes = passes ? passes->unsigned_number() : 1,
+                         .threads = static_cast<unsigned>(place.at("threads").unsigned_number())};
+    if (const auto others = place.find_value("other_programs")) {
+        settings.other_programs =
+            OtherPrograms{others->at("processors").double_number(),
+                          static_cast<unsigned>(others->at("available").unsigned_number())};
+    }
+    return settings;
 }
 
 ErrorStats error_at(const JsonCursor& place) {

@@ -562,6 +562,14 @@ std::string experiment_html(const ordered_json& experiment, const std::filesyste
            pairs_html(experiment, folder) + "</details></article>\n";
 }
 
+/// Returns the load by other programs during the run; empty if it is unknown.
+std::string other_programs_text(const ordered_json& settings) {
+    if (!settings.contains("other_programs")) return "";
+    const ordered_json& others = settings["other_programs"];
+    return to_string(OtherPrograms{number_of(others, "processors"),
+                                   static_cast<unsigned>(number_of(others, "available"))});
+}
+
 /// Returns <dt> and <dd> of machine, versions and settings.
 std::string machine_html(const ordered_json& report) {
     const ordered_json machine = report.value("machine", ordered_json::object());
@@ -582,6 +590,7 @@ std::string machine_html(const ordered_json& report) {
            entry("Compiler", text_of(machine, "compiler")) +
            entry("Build", text_of(machine, "build")) + entry("OpenGL", text_of(machine, "opengl")) +
            entry("relief", text_of(report, "relief")) + entry("Times", repeats) +
+           entry("Other programs", other_programs_text(settings)) +
            entry("Inputs", settings.value("quick", false) ? "small (--quick)" : "");
 }
 

@@ -99,7 +99,8 @@ void prepare(const ExperimentOptions& options) {
     set_thread_limit(options.general.threads);
 }
 
-void finish_report(const ExperimentOptions& options, AccuracyReport report, bool draws) {
+void finish_report(const ExperimentOptions& options, AccuracyReport report, bool draws,
+                   const ProcessorUse& use) {
     const RunOptions run = run_options(options);
     report.relief = version();
     report.machine = this_machine(draws);
@@ -107,7 +108,8 @@ void finish_report(const ExperimentOptions& options, AccuracyReport report, bool
                        .timed = run.is_timed,
                        .repeats = run.is_timed ? run.repeats.counted : 0,
                        .passes = report.settings.passes,
-                       .threads = static_cast<unsigned>(thread_count())};
+                       .threads = static_cast<unsigned>(thread_count()),
+                       .other_programs = run.is_timed ? use.of_others() : std::nullopt};
     std::vector<std::string> written;
     if (options.output) {
         for (const std::filesystem::path& file : write_report(*options.output, report))
@@ -121,6 +123,9 @@ void finish_report(const ExperimentOptions& options, AccuracyReport report, bool
                 "* efficient: faster than all efficient methods that are more accurate; times "
                 "within 10 % are tied\n"
                 "times: median, and range from the 10th to the 90th percentile of the rounds\n");
+        if (report.settings.other_programs)
+            print_text(
+                fmt::format("other programs {}\n", to_string(*report.settings.other_programs)));
         print_entry("written", written);
     }
 }
@@ -320,11 +325,12 @@ ExitCode run(const RunCommandOptions& options) {
     prepare(options.how);
     Stages stages(options.how.general.quiet);
     AccuracyReport report;
+    const ProcessorUse use;
     report.experiments = run_subjects(subjects, options, stages);
     report.settings.passes = options.pass_count();
     report.command = command_for(fmt::format("{}", fmt::join(options.words, " ")), options);
     const bool draws = std::any_of(subjects.begin(), subjects.end(), uses_opengl);
-    finish_report(options.how, std::move(report), draws);
+    finish_report(options.how, std::move(report), draws, use);
     return ExitCode::done;
 }
 
