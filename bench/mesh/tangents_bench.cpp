@@ -2,7 +2,10 @@
 // Tangents in the caller's memory and with a Workspace, interleaved with a naive loop and with a
 // triad over memory: `relief-tangents-bench [TRIANGLES [ROUNDS]]` prints tables in Markdown.
 // `relief-tangents-bench shapes` measures shapes on which a search for neighbors, a recursion or a
-// comparison of sets can need quadratic time.
+// comparison of sets can need quadratic time. `relief-tangents-bench reference LIBRARY [TRIANGLES
+// [ROUNDS]]` compares with MikkTSpace's reference implementation in a shared library, which is not
+// part of the project.
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -288,7 +291,119 @@ void print_shapes() {
     }
 }
 
+// MikkTSpace's reference implementation.
+
+struct ReferenceContext;
+
+/// The C interface of the reference, genTangSpaceDefault(): it reads the mesh by callbacks.
+struct ReferenceCallbacks {
+    int (*face_count)(const ReferenceContext*);
+    int (*corner_count)(const ReferenceContext*, int face);
+    void (*position)(const ReferenceContext*, float* out, int face, int corner);
+    void (*normal)(const ReferenceContext*, float* out, int face, int corner);
+    void (*texcoord)(const ReferenceContext*, float* out, int face, int corner);
+    void (*store_tangent)(const ReferenceContext*, const float* tangent, float sign, int face,
+                          int corner);
+    void (*store_frame)();  ///< Not used.
+};
+
+struct ReferenceInput {
+    const Mesh& mesh;
+    std::vector<glm::vec4>& tangents;  ///< One per corner.
+
+    [[nodiscard]] std::size_t vertex(int face, int corner) const {
+        return mesh.triangles[static_cast<std::size_t>(face)][corner];
+    }
+};
+
+struct ReferenceContext {
+    ReferenceCallbacks* callbacks;
+    ReferenceInput* input;
+};
+
+template <typename Vector>
+void store(const Vector& from, float* out) {
+    for (int axis = 0; axis < Vector::length(); ++axis)
+        out[axis] = from[axis];
+}
+
+ReferenceCallbacks reference_callbacks() {
+    using Context = const ReferenceContext*;
+    return {[](Context c) { return static_cast<int>(c->input->mesh.triangles.size()); },
+            [](Context, int) { return 3; },
+            [](Context c, float* out, int face, int corner) {
+                store(c->input->mesh.positions[c->input->vertex(face, corner)], out);
+            },
+            [](Context c, float* out, int face, int corner) {
+                store(c->input->mesh.normals[c->input->vertex(face, corner)], out);
+            },
+            [](Context c, float* out, int face, int corner) {
+                // The reference's v grows upwards, glTF's downwards.
+                const glm::vec2 texcoord = c->input->mesh.texcoords[c->input->vertex(face, corner)];
+                store(glm::vec2(texcoord.x, 1.0F - texcoord.y), out);
+            },
+            [](Context c, const float* tangent, float sign, int face, int corner) {
+                c->input->tangents[static_cast<std::size_t>(3 * face + corner)] = {
+                    tangent[0], tangent[1], tangent[2], sign};
+            },
+            nullptr};
+}
+
+using GenerateReference = int (*)(const ReferenceContext*);
+
+/// Prints a row: the times of both on one thread, and the corners at which the results differ.
+void print_reference_row(const std::string& title, const Mesh& mesh, GenerateReference generate,
+                         std::size_t rounds) {
+    std::vector<glm::vec4> tangents(3 * mesh.triangles.size());
+    ReferenceInput input{mesh, tangents};
+    ReferenceCallbacks callbacks = reference_callbacks();
+    const ReferenceContext context{&callbacks, &input};
+    Memory memory(mesh);
+    std::vector<Contender> both;
+    both.push_back({"reference", [&] { (void)generate(&context); }, {}});
+    both.push_back(of_corners(mesh, memory, 1));
+    measure(both, rounds, 1);
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < both[0].nanoseconds.size(); ++i)
+        ratios.push_back(both[0].nanoseconds[i] / both[1].nanoseconds[i]);
+    const TimeStatistics ratio = time_statistics(ratios);
+    std::size_t differing = 0;
+    for (std::size_t i = 0; i < tangents.size(); ++i) {
+        const double degrees =
+            degrees_between(glm::dvec3(tangents[i]), glm::dvec3(memory.of_corners[i]));
+        differing += degrees > 0.1 || tangents[i].w != memory.of_corners[i].w ? 1 : 0;
+    }
+    const auto count = static_cast<double>(mesh.triangles.size());
+    fmt::print("| {} | {:.1f} | {:.1f} | {:.1f} ({:.1f} to {:.1f}) | {} of {} |\n", title,
+               time_statistics(both[0].nanoseconds).median / count,
+               time_statistics(both[1].nanoseconds).median / count, ratio.median, ratio.p10,
+               ratio.p90, differing, tangents.size());
+}
+
+int run_reference(const char* library, std::size_t triangles, std::size_t rounds) {
+    void* const handle = dlopen(library, RTLD_NOW);
+    void* const symbol = handle != nullptr ? dlsym(handle, "genTangSpaceDefault") : nullptr;
+    if (symbol == nullptr) {
+        fmt::print(stderr, "{}: {} (compile mikktspace.c with -O3 -shared -fPIC)\n", library,
+                   handle != nullptr ? "has no genTangSpaceDefault" : dlerror());
+        return 1;
+    }
+    const auto generate = reinterpret_cast<GenerateReference>(symbol);
+    fmt::print(
+        "{} triangles, one thread, {} interleaved rounds; medians\n\n| mesh | reference, "
+        "ns/triangle | relief | ratio (10 % to 90 %) | corners that differ by 0.1 degrees "
+        "|\n|---|---|---|---|---|\n",
+        triangles, rounds);
+    print_reference_row("bumpy sphere", bumpy_sphere(triangles), generate, rounds);
+    print_reference_row("displaced grid", displaced_grid(triangles), generate, rounds);
+    return 0;
+}
+
 int run(int argc, char** argv) {
+    if (argc > 2 && std::string(argv[1]) == "reference") {
+        return run_reference(argv[2], argc > 3 ? std::strtoul(argv[3], nullptr, 10) : 1'000'000,
+                             argc > 4 ? std::strtoul(argv[4], nullptr, 10) : 5);
+    }
     if (argc > 1 && std::string(argv[1]) == "shapes") {
         print_shapes();
         return 0;
