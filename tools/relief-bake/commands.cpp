@@ -189,7 +189,10 @@ void add_map_output_options(CLI::App& app, MapOutputOptions& options, bool follo
                "Store .exr as 16-bit half floats (11 significant bits), which halves the size.")
         .group(group);
     add_switch(app, "--fast", options.fast, "Compress for speed; the file is larger.").group(group);
-    add_switch(app, "--small", options.small, "Compress for size; writing takes many times longer.")
+    add_switch(
+        app, "--small", options.small,
+        "Compress for size; writing takes up to ten times as long. A 16-bit map of bricks is "
+        "5 % smaller in twice the time, and noise is not smaller at all.")
         .group(group);
 }
 
