@@ -18,6 +18,9 @@ struct GeneratedDocument {
     const char* name;  ///< Unique; the name of the test.
     const char* page;  ///< Relative to docs/.
     std::vector<PageSection> (*sections)();
+    /// The file below shared_directory() that is measured; without it, the sections stay as they
+    /// are. Null: none.
+    const char* file = nullptr;
 };
 
 /// Returns the documents that are measured without times, and so equal on every machine.

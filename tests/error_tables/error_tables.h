@@ -23,6 +23,16 @@ std::vector<PageSection> bump_tables();        ///< docs/bump.md
 std::vector<PageSection> normal_map_tables();  ///< docs/normal-maps.md
 std::vector<PageSection> bake_tables();        ///< docs/bake.md
 
+// Tables of real inputs, which are files below shared_directory() (support/shared_data.h).
+inline constexpr const char* real_cloth = "data/dense/clothFolds.glb";
+inline constexpr const char* real_heights = "data/textures/height_only/hexMap_height_1024_u16.png";
+inline constexpr const char* real_normals = "data/textures/rock023_ambientcg/rock023_nrm_rgh.png";
+std::vector<PageSection> real_normal_table();
+std::vector<PageSection> real_tangent_tables();
+std::vector<PageSection> real_bump_table();
+std::vector<PageSection> real_bake_table();
+std::vector<PageSection> real_compression_table();
+
 // The sections of docs/bump.md one by one.
 PageSection kernel_tables();
 PageSection choice_tables();
