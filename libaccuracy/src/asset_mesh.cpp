@@ -97,8 +97,8 @@ CornerGroundTruth by_surface(const Mesh& mesh, const CreaseRule& creases) {
     ground_truth.description = fmt::format(
         "A smooth surface fitted through the vertices (degree 4, three rings of triangles; {}). It "
         "is known at {} of {} examined vertices; the others have too few neighbors or no smooth "
-        "surface. Its expected error is {:.2g} degrees. It assumes that the vertices lie on the "
-        "surface, and is not valid for models whose vertices do not.",
+        "surface. Its expected error is {:.2g} degrees RMS. It assumes that the vertices lie on "
+        "the surface, and is not valid for models whose vertices do not.",
         creases.description, fitted.corners.size(), fitted.examined_fans, fitted.reference_degrees);
     constexpr std::size_t fewest = 16;
     ground_truth.is_enough = fitted.corners.size() >= std::max(fewest, fitted.examined_fans / 10);
@@ -195,7 +195,7 @@ void add_caveats(AssetExperiment& asset, const CornerGroundTruth& ground_truth,
     if (!alike.empty()) {
         words += fmt::format(
             "; not told apart from {}, whose errors differ from it by less than the {:.2g} degrees "
-            "of the fitted surface itself",
+            "RMS of the fitted surface itself",
             fmt::join(alike, ", "), *ground_truth.expected_error);
     }
     constexpr double min_share_reported = 0.05;
