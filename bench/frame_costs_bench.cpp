@@ -101,12 +101,12 @@ void compare_encodings(const Mesh& mesh, std::size_t rounds) {
     for (std::size_t i = 0; i < all_frame_encodings.size(); ++i) {
         const FrameEncoding encoding = all_frame_encodings[i];
         for (const FrameRounding rounding : {FrameRounding::nearest, FrameRounding::best}) {
-            all.push_back({std::string(name_of(encoding)), [&frames, &report, encoding, rounding] {
-                               encode_frames(frames.normals, frames.tangents, encoding, rounding,
-                                             report);
-                           }});
+            all.push_back(
+                {std::string(enum_name(encoding)), [&frames, &report, encoding, rounding] {
+                     encode_frames(frames.normals, frames.tangents, encoding, rounding, report);
+                 }});
         }
-        all.push_back({std::string(name_of(encoding)), [&codes, &report, encoding, i] {
+        all.push_back({std::string(enum_name(encoding)), [&codes, &report, encoding, i] {
                            decode_frames(codes[i], encoding, report);
                        }});
     }
@@ -121,7 +121,7 @@ void compare_encodings(const Mesh& mesh, std::size_t rounds) {
         const auto taken = [&](std::size_t what) {
             return median(all[3 * i + what], frames.normals.size());
         };
-        fmt::print("| `{}` | {} | {:.0f} | {:.0f} | {:.0f} |\n", name_of(all_frame_encodings[i]),
+        fmt::print("| `{}` | {} | {:.0f} | {:.0f} | {:.0f} |\n", enum_name(all_frame_encodings[i]),
                    4 * words_per_frame(all_frame_encodings[i]), taken(0), taken(1), taken(2));
     }
 }

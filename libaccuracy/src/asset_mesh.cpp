@@ -462,7 +462,7 @@ AssetExperiment stored_frames(const Mesh& mesh, const CornerTangents& tangents,
         };
         method.command = fmt::format(
             "encode_frames(normals, tangents, FrameEncoding::{}, FrameRounding::{}, report)",
-            name_of(code.encoding), code.rounding_name());
+            enum_name(code.encoding), code.rounding_name());
         methods.push_back(std::move(method));
     }
     finish(asset, std::move(methods), {CostKind::bytes, invisible_degrees}, options);

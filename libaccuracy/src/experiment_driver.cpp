@@ -205,22 +205,21 @@ namespace {
 
 struct SubjectEntry {
     Subject subject;
-    std::string_view name;
     std::vector<PlannedExperiment> (*plan)(const PlanOptions&);
     bool is_rendered = false;
 };
 
 /// All subjects, in the order of reports.
 constexpr std::array subject_entries = {
-    SubjectEntry{Subject::normals, "normals", normals_plan},
-    SubjectEntry{Subject::tangents, "tangents", tangents_plan, true},
-    SubjectEntry{Subject::bump, "bump", bump_plan},
-    SubjectEntry{Subject::storage, "storage", storage_plan},
-    SubjectEntry{Subject::compression, "compression", compression_plan},
-    SubjectEntry{Subject::bake, "bake", bake_plan},
-    SubjectEntry{Subject::decimation, "decimation", decimation_plan},
-    SubjectEntry{Subject::shading, "shading", shading_plan, true},
-    SubjectEntry{Subject::stability, "stability", stability_plan},
+    SubjectEntry{Subject::normals, normals_plan},
+    SubjectEntry{Subject::tangents, tangents_plan, true},
+    SubjectEntry{Subject::bump, bump_plan},
+    SubjectEntry{Subject::storage, storage_plan},
+    SubjectEntry{Subject::compression, compression_plan},
+    SubjectEntry{Subject::bake, bake_plan},
+    SubjectEntry{Subject::decimation, decimation_plan},
+    SubjectEntry{Subject::shading, shading_plan, true},
+    SubjectEntry{Subject::stability, stability_plan},
 };
 
 const SubjectEntry& entry_of(Subject subject) {
@@ -241,15 +240,11 @@ bool uses_opengl(Subject subject) {
     return entry_of(subject).is_rendered;
 }
 
-std::string_view name_of(Subject subject) {
-    return entry_of(subject).name;
-}
-
 Subject subject_from(std::string_view word) {
     std::vector<std::string_view> names;
-    for (const SubjectEntry& entry : subject_entries) {
-        if (entry.name == word) return entry.subject;
-        names.push_back(entry.name);
+    for (const EnumName<Subject>& entry : enum_names<Subject>) {
+        if (entry.name == word) return entry.value;
+        names.emplace_back(entry.name);
     }
     throw InvalidInput(fmt::format("subject '{}' is not one of {}", word, fmt::join(names, ", ")));
 }

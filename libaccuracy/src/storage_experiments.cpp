@@ -544,8 +544,8 @@ std::string FrameCode::rounding_name() const {
 
 Method FrameCode::method(std::shared_ptr<const SampleFrames> frames) const {
     return {
-        .name = fmt::format("{}, {}", name_of(encoding), rounding_name()),
-        .choices = {{"encoding", std::string(name_of(encoding))}, {"rounding", rounding_name()}},
+        .name = fmt::format("{}, {}", enum_name(encoding), rounding_name()),
+        .choices = {{"encoding", std::string(enum_name(encoding))}, {"rounding", rounding_name()}},
         .error =
             [code = *this, frames = std::move(frames)] {
                 const FrameCodeErrors errors =
@@ -595,7 +595,7 @@ std::string price_of_best(const Experiment& experiment, std::span<const FrameCod
         const bool is_pair = codes[i].rounding == FrameRounding::nearest &&
                              codes[i + 1].rounding == FrameRounding::best;
         if (!is_pair || all[i].cost.stored_bytes != 4.0) continue;
-        std::string part = fmt::format("{} {:.2g} to {:.2g}", name_of(codes[i].encoding),
+        std::string part = fmt::format("{} {:.2g} to {:.2g}", enum_name(codes[i].encoding),
                                        all[i].error.rms, all[i + 1].error.rms);
         const double times = median_seconds(all[i + 1]) / median_seconds(all[i]);
         if (times > 0.0) part += fmt::format(" in {:.1f} times the time", times);

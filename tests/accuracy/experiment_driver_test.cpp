@@ -337,19 +337,19 @@ TEST(Subjects, HaveTheExperimentsOfTheirName) {
         RunOptions options = untimed();
         options.is_quick = true;
         options.selects_experiment = [&](const std::string& id) {
-            EXPECT_TRUE(id.starts_with(std::string(name_of(subject)) + "/")) << id;
+            EXPECT_TRUE(id.starts_with(std::string(enum_name(subject)) + "/")) << id;
             ++all;
             return false;
         };
         EXPECT_TRUE(run_experiments(std::array{subject}, options).empty());
-        EXPECT_GE(all, 2U) << name_of(subject);
+        EXPECT_GE(all, 2U) << enum_name(subject);
     }
 }
 
 TEST(Subjects, HaveWordsThatLeadBackToThem) {
     for (const Subject subject : subjects_with_experiments())
-        EXPECT_EQ(subject_from(name_of(subject)), subject);
-    EXPECT_EQ(name_of(Subject::stability), "stability");
+        EXPECT_EQ(subject_from(enum_name(subject)), subject);
+    EXPECT_STREQ(enum_name(Subject::stability), "stability");
     EXPECT_THROW(subject_from("colour"), InvalidInput);
 }
 

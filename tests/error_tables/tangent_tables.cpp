@@ -178,7 +178,7 @@ std::string encoding_tables() {
                 mean_and_max(errors.tangent),
                 mean_and_max(errors.texel),
                 fmt::format("{}", errors.flipped_frames)};
-            text += table_row(fmt::format("`{}`", name_of(encoding)),
+            text += table_row(fmt::format("`{}`", enum_name(encoding)),
                               std::vector(cells.size(), not_compared), cells);
         }
     }

@@ -61,7 +61,7 @@ std::string threads_of(const TimeRatio& times) {
 }
 
 std::string subject_of(const TimeRatio& times) {
-    return times.subject ? std::string(name_of(*times.subject)) : "all";
+    return times.subject ? std::string(enum_name(*times.subject)) : "all";
 }
 
 /// Times on all threads are not judged: a wall clock includes the time of other programs.

@@ -70,7 +70,7 @@ void add_times(Row& row, const std::optional<Timing>& timing) {
 Row row_of(const Experiment& experiment, const Measurement& one) {
     const ErrorStats& error = one.error;
     Row row = {experiment.id,
-               std::string(name_of(experiment.subject)),
+               std::string(enum_name(experiment.subject)),
                one.method,
                choices_of(one),
                experiment.error_unit,

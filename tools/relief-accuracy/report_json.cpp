@@ -141,7 +141,7 @@ void add_pictures(Json& json, const Experiment& one, bool has_files) {
 
 Json json_of(const Experiment& one, bool has_files) {
     Json json = {{"id", one.id},
-                 {"subject", name_of(one.subject)},
+                 {"subject", enum_name(one.subject)},
                  {"title", one.title},
                  {"question", one.question},
                  {"truth", one.ground_truth},

@@ -249,7 +249,7 @@ struct RunCommandOptions {
 std::string subject_choices() {
     std::string words = "all";
     for (const Subject subject : subjects_with_experiments())
-        words += ", " + std::string(name_of(subject));
+        words += ", " + std::string(enum_name(subject));
     return words;
 }
 
@@ -263,7 +263,7 @@ std::vector<Subject> subjects_of(const std::vector<std::string>& words) {
             return known;
         }
         const auto found = std::find_if(known.begin(), known.end(),
-                                        [&](Subject one) { return name_of(one) == word; });
+                                        [&](Subject one) { return enum_name(one) == word; });
         if (found == known.end())
             throw UsageError(fmt::format("{}: not one of {}", word, subject_choices()));
         if (std::find(requested.begin(), requested.end(), *found) != requested.end())
@@ -296,7 +296,7 @@ std::vector<Experiment> run_subjects(const std::vector<Subject>& subjects,
             static_cast<double>(done) / all);
     };
     run.finished = [&](Experiment& experiment) {
-        experiment.command = command_for(std::string(name_of(experiment.subject)), options);
+        experiment.command = command_for(std::string(enum_name(experiment.subject)), options);
         if (!prints_tables(options.how)) return;
         stages.clear_progress();
         print_text(fmt::format("{}\n", printable_lines(table_of(experiment))));

@@ -488,7 +488,7 @@ std::vector<std::string> step_lines(const MeshBakeRequest& request,
 std::string layer_text(const WrittenLayer& layer) {
     const LayerCoding& coding = layer.coding;
     std::string text =
-        fmt::format("{}: {}, {}", layer.file.string(), layer_name(coding.kind),
+        fmt::format("{}: {}, {}", layer.file.string(), enum_name(coding.kind),
                     coding.bits == 32 ? "float" : fmt::format("{} bit", coding.bits));
     if (coding.bits != 32 && coding.is_signed())
         text += fmt::format(", {:.6g} to {:.6g}", -coding.range, coding.range);
@@ -590,7 +590,7 @@ Json boxes_json(const BakeFit& fit, const glm::dvec3& origin) {
 
 Json layer_json(const WrittenLayer& layer) {
     const LayerCoding& coding = layer.coding;
-    Json json = {{"content", layer_name(coding.kind)},
+    Json json = {{"content", enum_name(coding.kind)},
                  {"output", layer.file.string()},
                  {"bits", coding.bits}};
     if (coding.bits != 32 && coding.is_signed()) {

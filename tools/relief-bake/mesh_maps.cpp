@@ -175,7 +175,7 @@ void check_files(const MeshBakeRequest& request, const std::vector<MapPlan>& map
     for (const MapPlan& map : maps) {
         use(map.output, map.name().empty() ? "the map" : map.name());
         for (const auto& [kind, file] : request.layers.files) {
-            use(map.named(file), fmt::format("{}{}{}", layer_name(kind),
+            use(map.named(file), fmt::format("{}{}{}", enum_name(kind),
                                              map.name().empty() ? "" : " of ", map.name()));
         }
     }

@@ -69,8 +69,9 @@ std::vector<std::byte> encode(std::span<const float> values, std::span<const Tex
                         encode_value<Sample>(coding, values[i * channels + channel], is_outside));
                 }
                 if (is_outside) {
-                    task_report.add(layer_name(coding.kind) + " outside the range of its file",
-                                    "texel", first_texel + i, "is clamped to the range");
+                    task_report.add(
+                        std::string(enum_name(coding.kind)) + " outside the range of its file",
+                        "texel", first_texel + i, "is clamped to the range");
                 }
                 if (!has_alpha) continue;
                 const bool is_filled =
@@ -83,22 +84,6 @@ std::vector<std::byte> encode(std::span<const float> values, std::span<const Tex
 }
 
 }  // namespace
-
-std::string layer_name(LayerKind kind) {
-    switch (kind) {
-        case LayerKind::height:
-            return "height map";
-        case LayerKind::occlusion:
-            return "ambient occlusion";
-        case LayerKind::curvature:
-            return "curvature";
-        case LayerKind::position:
-            return "positions";
-        case LayerKind::color:
-            break;
-    }
-    return "colors";
-}
 
 std::span<const float> layer_values(LayerKind kind, const BakedRows& rows) {
     switch (kind) {

@@ -452,28 +452,6 @@ double largest(const FrameEncodingError& error) {
 
 }  // namespace
 
-std::string_view name_of(FrameEncoding encoding) {
-    switch (encoding) {
-        case FrameEncoding::float32:
-            break;
-        case FrameEncoding::octahedral8:
-            return "octahedral8";
-        case FrameEncoding::octahedral10:
-            return "octahedral10";
-        case FrameEncoding::octahedral16:
-            return "octahedral16";
-        case FrameEncoding::quaternion8:
-            return "quaternion8";
-        case FrameEncoding::quaternion16:
-            return "quaternion16";
-        case FrameEncoding::angle10:
-            return "angle10";
-        case FrameEncoding::angle16:
-            return "angle16";
-    }
-    return "float32";
-}
-
 std::size_t words_per_frame(FrameEncoding encoding) {
     switch (encoding) {
         case FrameEncoding::float32:

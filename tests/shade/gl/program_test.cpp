@@ -247,7 +247,7 @@ std::vector<glm::vec4> drawn(const Api& api, FrameEncoding encoding,
                     "    uvec4 bytes = uvec4(round(255.0 * texel));\n"
                     "    return bytes.x | bytes.y << 8 | bytes.z << 16 | bytes.w << 24;\n}\n"
                     "void main() {\n    vec3 normal;\n    vec4 tangent;\n    " +
-                    std::string(name_of(encoding)) + "(" + read +
+                    std::string(enum_name(encoding)) + "(" + read +
                     ", normal, tangent);\n    color = " +
                     (normals ? "vec4(normal, 0.0)" : "tangent") + ";\n}\n",
                 [&](const LinkedProgram& program) {
@@ -290,8 +290,8 @@ TEST_P(FrameDecoding, ThePagesShadersDecodeAsTheLibraryDoes) {
             if (!(tangent <= worst)) worst = tangent;
             wrong_hands += tangents[i].w == frames.tangents[i].w ? 0U : 1U;
         }
-        EXPECT_LE(worst, float_degrees) << name_of(encoding);
-        EXPECT_EQ(wrong_hands, 0U) << name_of(encoding);
+        EXPECT_LE(worst, float_degrees) << enum_name(encoding);
+        EXPECT_EQ(wrong_hands, 0U) << enum_name(encoding);
     }
 }
 

@@ -176,7 +176,7 @@ INSTANTIATE_TEST_SUITE_P(All, AccuracyDocumentOf,
                                          Subject::storage, Subject::compression, Subject::bake,
                                          Subject::decimation, Subject::stability),
                          [](const testing::TestParamInfo<Subject>& tested) {
-                             return std::string(name_of(tested.param));
+                             return std::string(enum_name(tested.param));
                          });
 
 /// Returns the commands with a recommendation in the page.

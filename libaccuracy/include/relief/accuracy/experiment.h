@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/statistics.h"
@@ -25,7 +26,7 @@
 namespace RELIEF_API relief {
 namespace accuracy {
 
-/// The subjects of experiments, with the names of `relief-accuracy run`.
+/// The subjects of experiments.
 enum class Subject {
     normals,
     tangents,
@@ -37,6 +38,23 @@ enum class Subject {
     shading,
     stability
 };
+
+}  // namespace accuracy
+
+/// The names of `relief-accuracy run`.
+template <>
+inline constexpr auto enum_names<accuracy::Subject> =
+    std::to_array<EnumName<accuracy::Subject>>({{"normals", accuracy::Subject::normals},
+                                                {"tangents", accuracy::Subject::tangents},
+                                                {"bump", accuracy::Subject::bump},
+                                                {"storage", accuracy::Subject::storage},
+                                                {"compression", accuracy::Subject::compression},
+                                                {"bake", accuracy::Subject::bake},
+                                                {"decimation", accuracy::Subject::decimation},
+                                                {"shading", accuracy::Subject::shading},
+                                                {"stability", accuracy::Subject::stability}});
+
+namespace accuracy {
 
 /// Returns statistics with NaN instead of zeros if there is no defined error, for reports.
 ErrorStats nan_if_empty(const ErrorStats& error);
@@ -244,9 +262,6 @@ std::vector<Subject> subjects_with_experiments();
 /// Returns true if some of its experiments draw with OpenGL, so that their errors depend on the
 /// renderer.
 bool uses_opengl(Subject subject);
-
-/// Returns the name: "normals", "tangents", ...
-std::string_view name_of(Subject subject);
 
 /// Returns the subject of this name. \throws InvalidInput listing the valid names
 Subject subject_from(std::string_view word);

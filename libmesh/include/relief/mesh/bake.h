@@ -259,9 +259,14 @@ struct BakedRows {
 
 enum class LayerKind { height, occlusion, curvature, position, color };
 
-/// "height map", "ambient occlusion", "curvature", "positions" or "colors", which is also the
-/// "relief:content" of files.
-std::string layer_name(LayerKind kind);
+/// The "relief:content" of files.
+template <>
+inline constexpr auto enum_names<LayerKind> =
+    std::to_array<EnumName<LayerKind>>({{"height map", LayerKind::height},
+                                        {"ambient occlusion", LayerKind::occlusion},
+                                        {"curvature", LayerKind::curvature},
+                                        {"positions", LayerKind::position},
+                                        {"colors", LayerKind::color}});
 
 /// The values of a layer.
 std::span<const float> layer_values(LayerKind kind, const BakedRows& rows);

@@ -15,7 +15,6 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "relief/export.h"
@@ -198,6 +197,18 @@ enum class FrameEncoding {
     angle16,
 };
 
+/// The names in docs/tangents.md.
+template <>
+inline constexpr auto enum_names<FrameEncoding> =
+    std::to_array<EnumName<FrameEncoding>>({{"float32", FrameEncoding::float32},
+                                            {"octahedral8", FrameEncoding::octahedral8},
+                                            {"octahedral10", FrameEncoding::octahedral10},
+                                            {"octahedral16", FrameEncoding::octahedral16},
+                                            {"quaternion8", FrameEncoding::quaternion8},
+                                            {"quaternion16", FrameEncoding::quaternion16},
+                                            {"angle10", FrameEncoding::angle10},
+                                            {"angle16", FrameEncoding::angle16}});
+
 inline constexpr std::array all_frame_encodings = {
     FrameEncoding::float32,      FrameEncoding::octahedral8, FrameEncoding::octahedral10,
     FrameEncoding::octahedral16, FrameEncoding::quaternion8, FrameEncoding::quaternion16,
@@ -213,9 +224,6 @@ enum class FrameRounding {
     /// decoders must divide by the length.
     best,
 };
-
-/// Returns "float32", "octahedral8", ...: the names in docs/tangents.md.
-std::string_view name_of(FrameEncoding encoding);
 
 /// Returns the number of words of a frame.
 std::size_t words_per_frame(FrameEncoding encoding);
