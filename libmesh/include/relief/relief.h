@@ -107,9 +107,8 @@ RELIEF_C_API relief_status relief_report_finding(relief_report* report, size_t i
 /// \param user  relief_execution::user
 /// \param stage  "normals", "tangents", "unwrapping", "normal map", "baking", ...
 /// \param fraction  the finished part of the stage, 0 to 1; negative if it is unknown
-/// \return 0, or another value to cancel: the function then returns RELIEF_CANCELLED, usually
-/// within
-///         a few milliseconds
+/// \return 0, or another value to cancel: the function then returns RELIEF_CANCELLED, usually soon
+///         after
 typedef int32_t (*relief_progress)(void* user, const char* stage, double fraction);
 
 /// The execution of a function. Results do not depend on it.

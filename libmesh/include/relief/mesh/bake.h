@@ -167,7 +167,7 @@ struct BakeProgress {
 struct BakeMapOptions {
     int width = 0;  ///< In texels.
     int height = 0;
-    MapRegion placement{};
+    MapRegion placement{};  ///< The part of texture space that the map shows.
     /// The triangles of the low mesh that the map shows, ascending: those of a material or a tile.
     /// If absent, all.
     std::optional<std::vector<std::uint32_t>> triangles{};
@@ -205,8 +205,8 @@ struct BakeOptions {
     /// `layers` (those that maps can have), `sample_angle` (whether maps sample adaptively) and the
     /// numbers of texels and samples, to estimate how much preparation is worthwhile.
     BakeMapOptions map{};
-    VectorSpace space = VectorSpace::tangent;
-    RayDirections directions = RayDirections::averaged;
+    VectorSpace space = VectorSpace::tangent;            ///< Of normals; see `output_from_mesh`.
+    RayDirections directions = RayDirections::averaged;  ///< Before `hardness` is applied.
     /// For RayDirections::averaged: the interpolation weight from the smoothed normals (0) to the
     /// vertex normals (1). It matters only at hard edges.
     double hardness = 0.0;
@@ -218,7 +218,7 @@ struct BakeOptions {
     /// that of the cage.
     std::optional<double> offset;
     std::optional<double> max_distance;
-    BackFaces back_faces = BackFaces::skip;
+    BackFaces back_faces = BackFaces::skip;  ///< Of the high meshes.
     /// Accepts high and low meshes whose bounding boxes differ in size by more than max_size_ratio;
     /// see BakeMismatch.
     bool allow_size_mismatch = false;
