@@ -86,18 +86,28 @@ bool holds(const py::array& array) {
             array.dtype().byteorder() != '>');
 }
 
+/// Calls `work` with the first row and the converted values of blocks of rows. Ctrl+C ends it.
+template <typename Scalar, typename Work>
+void for_blocks(const py::array& array, const Work& work) {
+    constexpr py::ssize_t values = py::ssize_t{1} << 20;
+    const py::ssize_t rows = array.shape(0);
+    const py::ssize_t step =
+        std::max<py::ssize_t>(1, values * rows / std::max<py::ssize_t>(1, array.size()));
+    for (py::ssize_t begin = 0; begin < rows; begin += step) {
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        const py::array_t<Scalar, py::array::c_style | py::array::forcecast> block(
+            array[py::slice(begin, std::min(begin + step, rows), 1)]);
+        work(begin, std::span(block.data(), static_cast<std::size_t>(block.size())));
+    }
+}
+
 template <typename Scalar>
 Image::Samples copied_samples(const py::array& array) {
-    const auto packed = py::array_t<Scalar, py::array::c_style | py::array::forcecast>(array);
-    const Scalar* const first = packed.data();
-    const auto size = static_cast<std::size_t>(packed.size());
-    constexpr std::size_t step = std::size_t{1} << 20;
     std::vector<Scalar> samples;
-    samples.reserve(size);
-    for (std::size_t begin = 0; begin < size; begin += step) {
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        samples.insert(samples.end(), first + begin, first + std::min(size, begin + step));
-    }
+    samples.reserve(static_cast<std::size_t>(array.size()));
+    for_blocks<Scalar>(array, [&](py::ssize_t, std::span<const Scalar> values) {
+        samples.insert(samples.end(), values.begin(), values.end());
+    });
     return samples;
 }
 
@@ -203,19 +213,6 @@ bool is_float(const py::array& array) {
 
 bool is_integer(const py::array& array) {
     return array.dtype().kind() == 'i' || array.dtype().kind() == 'u';
-}
-
-/// Calls `work` with the first row and the converted values of blocks of rows. Ctrl+C ends it.
-template <typename Scalar, typename Work>
-void for_blocks(const py::array& array, const Work& work) {
-    constexpr py::ssize_t step = py::ssize_t{1} << 18;
-    for (py::ssize_t begin = 0; begin < array.shape(0); begin += step) {
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        const py::ssize_t end = std::min(begin + step, array.shape(0));
-        const py::array_t<Scalar, py::array::c_style | py::array::forcecast> block(
-            array[py::slice(begin, end, 1)]);
-        work(begin, std::span(block.data(), static_cast<std::size_t>(block.size())));
-    }
 }
 
 /// Returns the origin for positions of any type.

@@ -73,6 +73,8 @@ class Interruption(unittest.TestCase):
     def test_conversions_end(self):
         positions = numpy.zeros((20_000_000, 3))
         self.expect_end(lambda: relief.triangle_normals(positions, self.dense.triangles))
+        image = numpy.zeros((8192, 8192))
+        self.expect_end(lambda: relief.bump(image))
 
     def test_normals_end(self):
         positions, triangles = self.dense.positions, self.dense.triangles
