@@ -173,7 +173,7 @@ def decimate(
     keep_borders: bool = False,
     keep_seams: bool = False,
     keep_positions: bool = False,
-    weights: Mapping[Literal["texcoords", "normals", "colors"], float] = ...,
+    weights: Mapping[Literal["texcoords", "normals", "colors"], float] = {},
     normals: NormalMode = "keep",
     report: Report | None = None,
 ) -> tuple[Mesh, Indices]: ...
@@ -181,7 +181,7 @@ def levels_of_detail(
     mesh: Mesh,
     triangles: Sequence[int],
     *,
-    weights: Mapping[Literal["texcoords", "normals", "colors"], float] = ...,
+    weights: Mapping[Literal["texcoords", "normals", "colors"], float] = {},
     report: Report | None = None,
 ) -> list[Mesh]: ...
 def surface_distance(a: Mesh, b: Mesh) -> tuple[dict[str, float], dict[str, float]]: ...
@@ -201,7 +201,7 @@ def write_image(
     image: Image,
     *,
     color_space: ColorSpace = "data",
-    metadata: dict[str, str] = ...,
+    metadata: dict[str, str] = {},
     half: bool = False,
     report: Report | None = None,
 ) -> None: ...
@@ -212,7 +212,7 @@ def write_texture(
     format: TextureFormat = "bc5",
     quality: Literal["fast", "normal", "best"] = "normal",
     srgb: bool = False,
-    metadata: dict[str, str] = ...,
+    metadata: dict[str, str] = {},
     zstd: int | None = None,
     report: Report | None = None,
 ) -> None: ...
@@ -302,9 +302,9 @@ def convert_space(
     repeat: bool = False,
     report: Report | None = None,
 ) -> Floats: ...
-def check_normal_map(map: Image, *, metadata: dict[str, str] = ..., color_tag: str = "") -> dict[str, Any]: ...
+def check_normal_map(map: Image, *, metadata: dict[str, str] = {}, color_tag: str = "") -> dict[str, Any]: ...
 def compare_images(
-    a: Image, b: Image, *, color_space: ColorSpace = "srgb", pixels_per_degree: float = ...
+    a: Image, b: Image, *, color_space: ColorSpace = "srgb", pixels_per_degree: float = 67.02064327658225
 ) -> dict[str, Any]: ...
 def compare_normals(a: FloatArray, b: FloatArray) -> tuple[dict[str, Any], Floats]: ...
 def unwrap(
@@ -325,7 +325,7 @@ def bake(
     low: Mesh,
     size: tuple[int, int],
     *,
-    layers: Sequence[Layer] = ...,
+    layers: Sequence[Layer] = ("normals",),
     space: Space = "tangent",
     rays: Rays = "averaged",
     hardness: float = 0.0,

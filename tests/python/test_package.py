@@ -49,6 +49,7 @@ class Package(unittest.TestCase):
             with self.subTest(name):
                 text = pydoc.plaintext.document(value)
                 self.assertNotIn("...)", text.splitlines()[0])
+                self.assertNotIn("Ellipsis", text)
                 self.assertRegex(text, r"Raises? \w+")
                 signature = inspect.signature(value)
                 self.assertNotIn(inspect.Parameter.empty, [p.annotation for p in signature.parameters.values()])
