@@ -166,12 +166,15 @@ std::vector<ClusterEdge> borders_of(const AtlasSurface& surface,
                                     std::span<const std::uint32_t> cluster, std::size_t count) {
     std::vector<ClusterEdge> edges;
     for (Corner corner = 0; corner < surface.opposite.size(); ++corner) {
+        check_cancelled(corner);
         const Corner other = surface.opposite[corner];
         if (other == no_corner || other < corner || surface.is_border[corner]) continue;
         const auto [a, b] = std::minmax(cluster[corner / 3], cluster[other / 3]);
         if (a != b) edges.push_back({a, b, 1, -1.0F, surface.edge_length(corner)});
     }
+    check_cancelled();
     combine_edges(edges, count);
+    check_cancelled();
     return edges;
 }
 
@@ -209,6 +212,7 @@ Segmentation divided(const AtlasSurface& surface, const ChartLimits& limits) {
     for (std::uint32_t face = 0; face < face_count; ++face)
         charts.add(cluster[face], surface.areas[face], glm::dvec3(result.smooth_normals[face]));
     for (Corner corner = 0; corner < surface.opposite.size(); ++corner) {
+        check_cancelled(corner);
         const Corner other = surface.opposite[corner];
         if (other == no_corner || cluster[corner / 3] != cluster[other / 3])
             charts.add_border(cluster[corner / 3], surface.edge_length(corner));

@@ -53,6 +53,7 @@ std::vector<std::uint32_t> ordered_positions(const Mesh& mesh,
     const glm::dvec3 middle = 0.5 * (low + high);
     std::vector<Placed> placed;
     for (std::size_t v = 0; v < classes.size(); ++v) {
+        check_cancelled(v);
         if (!is_used[v]) continue;
         const glm::dvec3 at = (glm::dvec3(mesh.positions[v]) - middle) / surface.unit + 0.5;
         const auto cell = [](double x) {
@@ -66,6 +67,7 @@ std::vector<std::uint32_t> ordered_positions(const Mesh& mesh,
         const int order = compare_values(mesh.positions[a.vertex], mesh.positions[b.vertex]);
         return order != 0 ? order < 0 : a.vertex < b.vertex;  // Equal ones are of different parts.
     });
+    check_cancelled();
     std::vector<std::uint32_t> number(classes.size(), no_vertex);
     surface.positions.reserve(placed.size());
     for (const Placed& each : placed) {
@@ -101,6 +103,7 @@ void sort_faces(std::vector<OrderedFace>& faces, std::size_t vertex_count) {
     for (const OrderedFace& face : faces)
         sorted[next[face.vertices.x]++] = face;
     for (std::size_t v = 0; v < vertex_count; ++v) {
+        check_cancelled(v);
         std::sort(sorted.begin() + begin[v], sorted.begin() + begin[v + 1],
                   [](const OrderedFace& a, const OrderedFace& b) {
                       if (a.vertices != b.vertices) return precedes(a.vertices, b.vertices);
@@ -134,6 +137,7 @@ std::vector<std::uint32_t> fill_faces(const Mesh& mesh, std::span<const bool> is
     source.reserve(ordered.size());
     surface.faces.reserve(ordered.size());
     for (const OrderedFace& each : ordered) {
+        check_cancelled(source.size());
         if (!surface.faces.empty() && surface.faces.back() == each.vertices) {
             report.add("repeated triangle", "triangle", each.triangle,
                        "has the texture coordinates of the first one");
@@ -267,14 +271,17 @@ void join_faces(AtlasSurface& surface, Report& report) {
         return std::pair(std::min(a, b), std::max(a, b));
     };
     std::vector<std::uint32_t> begin(surface.positions.size() + 1, 0);
-    for (Corner corner = 0; corner < edge_count; ++corner)
+    for (Corner corner = 0; corner < edge_count; ++corner) {
+        check_cancelled(corner);
         ++begin[ends(corner).first + 1];
+    }
     for (std::size_t v = 0; v < surface.positions.size(); ++v)
         begin[v + 1] += begin[v];
     std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
     // The larger end and the corner, so that they are sorted as one number.
     std::vector<std::uint64_t> edges(edge_count);
     for (Corner corner = 0; corner < edge_count; ++corner) {
+        check_cancelled(corner);
         const auto [low, high] = ends(corner);
         edges[next[low]++] = static_cast<std::uint64_t>(high) << 32 | corner;
     }
