@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -410,6 +411,66 @@ TEST(UnwrapScene, ReportsOrRemovesTexturesAtReplacedCoordinates) {
     result = unwrapped(workplace, "--remove-textures", "out/c.gltf");
     EXPECT_EQ(result.exit_code, 0) << result.error;
     EXPECT_FALSE(json::parse(workplace.read("out/c.gltf")).contains("images"));
+}
+
+TEST(UnwrapScene, FindsTexturesOfVariantsAndKeepsAnimatedOnes) {
+    const Workplace workplace;
+    SceneFile scene = textured_square({{"index", 0}});
+    scene.root["extensionsUsed"] = {"KHR_materials_variants", "KHR_animation_pointer",
+                                    "KHR_texture_transform"};
+    scene.root["extensions"]["KHR_materials_variants"]["variants"] =
+        json::parse(R"([{"name": "Painted"}])");
+    json& primitive = scene.root["meshes"][0]["primitives"][0];
+    scene.root["materials"].push_back({{"name", "Plain"}});
+    primitive["material"] = 1;
+    primitive["extensions"]["KHR_materials_variants"]["mappings"] =
+        json::parse(R"([{"material": 0, "variants": [0]}])");
+    scene.write(workplace);
+    const ProgramResult result = unwrapped(workplace, "--remove-textures", "out/a.gltf");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("(material 0): loses these textures; its factors stay"));
+    EXPECT_FALSE(json::parse(workplace.read("out/a.gltf")).contains("images"));
+
+    scene.root["materials"][0]["emissiveTexture"]["extensions"]["KHR_texture_transform"] =
+        json::object();
+    const std::size_t times =
+        scene.add(std::vector<float>{0, 1}, 5126, "SCALAR", 1, {{"min", {0.0}}, {"max", {1.0}}});
+    const std::size_t offsets = scene.add(std::vector<float>{0, 0, 1, 1}, 5126, "VEC2", 2);
+    json channel = json::parse(R"({"sampler": 0, "target": {"path": "pointer"}})");
+    channel["target"]["extensions"]["KHR_animation_pointer"]["pointer"] =
+        "/materials/0/emissiveTexture/extensions/KHR_texture_transform/offset";
+    scene.root["animations"][0] = {{"samplers", {{{"input", times}, {"output", offsets}}}},
+                                   {"channels", {channel}}};
+    scene.write(workplace);
+    std::filesystem::remove(workplace / "out/a.gltf");
+    std::filesystem::remove(workplace / "out/a.bin");
+    std::filesystem::remove(workplace / "out/r.json");
+    expect_refusals(workplace, "relief-mesh", "old.glb",
+                    {{"relief-mesh unwrap scene.gltf out/old.glb --remove-textures", 1,
+                      "scene.gltf: material 0: its emissiveTexture cannot be removed, because an "
+                      "animation changes it"}});
+}
+
+TEST(UnwrapScene, RemovesDisplacementsOfReplacedCoordinates) {
+    const Workplace workplace;
+    SceneFile scene;
+    json square = scene.square(0);
+    square["attributes"]["TEXCOORD_0"] = scene.add_square_texcoords();
+    square["targets"][0] = {{"POSITION", scene.add_positions(std::vector<float>(12, 1.0F))},
+                            {"TEXCOORD_0", scene.add_square_texcoords()}};
+    // A level of detail, which no node of the scene has.
+    scene.root["meshes"] = {{{"primitives", {square}}}, {{"primitives", {scene.square(0)}}}};
+    scene.write(workplace);
+    const ProgramResult result = unwrapped(workplace, "", "out/a.gltf");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("1 x displacements of replaced texture coordinates (morph "
+                                      "target 0): are removed"));
+    EXPECT_THAT(result.out, HasSubstr("1 x mesh outside of the scene (mesh 1): gets texels of its "
+                                      "own, at the scale of its object space"));
+    const json target =
+        json::parse(workplace.read("out/a.gltf"))["meshes"][0]["primitives"][0]["targets"][0];
+    EXPECT_TRUE(target.contains("POSITION"));
+    EXPECT_FALSE(target.contains("TEXCOORD_0"));
 }
 
 TEST(UnwrapScene, RecomputesTangentsOfReplacedCoordinates) {

@@ -343,7 +343,7 @@ void add_unwrap_options(CLI::App& app, UnwrapCommand& command) {
         .group(charts);
     add_switch(
         app, "--fix-mirrored", command.options.unmirror,
-        "With --repack: reflect mirrored charts, which would bake wrong normal maps. Default: "
+        "With --repack: reflect mirrored charts, so that all have the same handedness. Default: "
         "they stay, which is a finding.")
         .group(charts);
     add_picture_options(app, command.picture);
