@@ -18,6 +18,7 @@
 #include "atlas/packing.h"
 #include "atlas/stack.h"
 #include "atlas/surface.h"
+#include "geometry/corner_texcoords.h"
 #include "progress_stage.h"
 
 namespace relief {
@@ -269,25 +270,8 @@ Unwrapped unwrap(const Mesh& mesh, const UnwrapOptions& options, Report& report)
 }
 
 FramedMesh with_texcoords(const Mesh& mesh, const Unwrapped& unwrapped) {
-    if (unwrapped.corner_texcoords.size() != 3 * mesh.triangles.size())
-        throw InvalidInput(fmt::format("there are {} texture coordinates for {} triangles",
-                                       unwrapped.corner_texcoords.size(), mesh.triangles.size()));
-    std::vector<glm::vec3> values;
-    values.reserve(unwrapped.corner_texcoords.size());
-    for (const glm::vec2& each : unwrapped.corner_texcoords)
-        values.emplace_back(each, 0.0F);
-    const VertexSplit split =
-        split_where_corners_differ(mesh.positions.size(), mesh.triangles, values);
-    FramedMesh result;
-    result.mesh = carried(mesh, split);
-    result.source_vertex = split.source_vertex;
+    FramedMesh result = with_corner_texcoords(mesh, unwrapped.corner_texcoords);
     result.mesh.tangents.clear();
-    result.mesh.texcoords.assign(result.mesh.positions.size(), glm::vec2(0.0F));
-    for (std::size_t corner = 0; corner < unwrapped.corner_texcoords.size(); ++corner) {
-        const std::uint32_t vertex =
-            split.triangles[corner / 3][static_cast<glm::length_t>(corner % 3)];
-        result.mesh.texcoords[vertex] = unwrapped.corner_texcoords[corner];
-    }
     return result;
 }
 

@@ -14,9 +14,12 @@
 #include <span>
 #include <utility>
 
+#include "geometry/corner_texcoords.h"
 #include "relief/mesh/frames.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 /// The instances of a mesh in the scene.
@@ -159,25 +162,6 @@ class DocumentJoiner {
     std::vector<JoinedPart> parts_;
 };
 
-/// Splits vertices where the coordinates of their corners differ.
-FramedMesh split_by_texcoords(const Mesh& mesh, std::span<const glm::vec2> corners) {
-    std::vector<glm::vec3> values;
-    values.reserve(corners.size());
-    for (const glm::vec2& each : corners)
-        values.emplace_back(each, 0.0F);
-    VertexSplit split = split_where_corners_differ(mesh.positions.size(), mesh.triangles, values);
-    FramedMesh result;
-    result.mesh = carried(mesh, split);
-    result.mesh.texcoords.assign(result.mesh.positions.size(), glm::vec2(0.0F));
-    for (std::size_t corner = 0; corner < corners.size(); ++corner) {
-        const std::uint32_t vertex =
-            split.triangles[corner / 3][static_cast<glm::length_t>(corner % 3)];
-        result.mesh.texcoords[vertex] = corners[corner];
-    }
-    result.source_vertex = std::move(split.source_vertex);
-    return result;
-}
-
 /// Recomputes the tangents of a primitive.
 std::size_t renew_tangents(GltfDocument& document, GltfPrimitiveId id, int set, Report& report) {
     Mesh mesh = document.mesh(id, set);
@@ -266,7 +250,7 @@ ChangedTexcoords change_texcoords_of(GltfDocument& document, const TexcoordOptio
     for (std::size_t i = 0; i < joined.parts().size(); ++i) {
         const JoinedPart& part = joined.parts()[i];
         PartReport own{document.describe(part.id), {}};
-        const FramedMesh split = split_by_texcoords(
+        const FramedMesh split = with_corner_texcoords(
             document.mesh(part.id),
             std::span(corners).subspan(3 * part.first_triangle, 3 * part.triangle_count));
         document.set_texcoords(part.id, options.set, split, own.report);
@@ -310,7 +294,7 @@ ChangedTexcoords change_texcoords_of(MeshFile& file, const TexcoordOptions& opti
     const std::vector<glm::vec2> corners = change({mesh, {}}, report);
     require_three_each(corners, done.triangles);
     if (!mesh.texcoords.empty()) handle_maps(file.materials, options.remove_textures, report);
-    file.mesh = split_by_texcoords(mesh, corners).mesh;
+    file.mesh = with_corner_texcoords(mesh, corners).mesh;
     file.mesh.tangents.clear();
     done.vertices_written = file.mesh.positions.size();
     done.reports.push_back({"", std::move(report)});
