@@ -82,7 +82,7 @@ std::string method_rows(const ordered_json& experiment) {
         if (measurements.size() > max_rows && !is_efficient && !is_recommended) continue;
         text += is_efficient ? "| **" + method + "** |" : "| " + method + " |";
         for (const std::size_t column : columns)
-            text += " " + table.rows[i][column] + " |";
+            text += " " + table.rows[i][column].text + " |";
         text += "\n";
     }
     return text;
@@ -152,9 +152,10 @@ AccuracySection accuracy_results(const std::filesystem::path& folder) {
         if (found == all.end()) throw std::runtime_error(fmt::format("no {}", shown.id));
         std::string subject = text_of(*found, "subject");
         const std::string picture = fmt::format("images/accuracy-{}.svg", subject);
-        result.pictures.push_back({picture, shown.is_chart
-                                                ? tools::chart_picture(found->at("charts").at(0))
-                                                : tools::scatter_picture(*found)});
+        result.pictures.push_back(
+            {picture,
+             tools::svg_file(shown.is_chart ? tools::curves_plot(found->at("charts").at(0), {})
+                                            : tools::scatter_plot(*found, {}))});
         subject[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(subject[0])));
         const std::string title = text_of(*found, "title");
         const std::size_t colon = title.rfind(": ");

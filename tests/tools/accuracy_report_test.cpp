@@ -184,16 +184,15 @@ TEST(AccuracyTable, MarksTheFrontierAndAlignsItsColumns) {
         HasSubstr(
             "  expected: RMS, the root of the sum of squares of the reference error, 0.6 to 6 (the "
             "input does not show it), and the error of the method\n"
-            "                  RMS   mean  99 %   max  undefined   expected     PSNR  1 thread     "
-            " "
-            "               all              memory  stored\n"
-            "  * exact, slow     0      0     0     0                 0.6–6            1.00 ms  "
-            "920 µs–1.08 ms  500 µs  500–500 µs  4.1 kB   2.5 B\n"
-            "    near         0.25  0.125   0.5  0.75          2  0.65–6.01  40.0 dB    500 µs  "
-            "    460–540 µs  250 µs  250–250 µs  4.1 kB   2.5 B\n"
+            "                   RMS   mean   99 %    max  PSNR, dB  undefined    expected         "
+            "       one thread          all threads  memory  stored\n"
+            "  * exact, slow      0      0      0      0         –          0     0.600–6  1.00 ms "
+            "(920 µs–1.08 ms)  500 µs (500–500 µs)  4.1 kB  2.50 B\n"
+            "    near         0.250  0.125  0.500  0.750        40   2 (17 %)  0.650–6.01       "
+            "500 µs (460–540 µs)  250 µs (250–250 µs)  4.1 kB  2.50 B\n"
             "  near: It is not far.\n"));
     EXPECT_THAT(table,
-                HasSubstr("    near: - at 1e-06, 0.25 at 1, order -0.10 (in theory 0), breaks "
+                HasSubstr("    near: – at 1e-06, 0.250 at 1, order -0.10 (in theory 0), breaks "
                           "at 1e-06\n"));
     Experiment untimed = sample_report().experiments[0];
     for (Measurement& one : untimed.measurements)
@@ -270,7 +269,7 @@ TEST(AccuracyReportCommand, ReportsMissingPictures) {
     const ProgramResult result = workplace.run("relief-accuracy report printed.json");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     const std::string page = workplace.read("report.html");
-    EXPECT_THAT(page, HasSubstr("<p class=\"absent\">Error map: Where, near: no picture was"));
+    EXPECT_THAT(page, HasSubstr("<p class=\"absent\">Where, near: black is 0, the brightest "));
     EXPECT_THAT(page, HasSubstr("<p class=\"absent\">Seen: truth: no picture was written</p>"));
     EXPECT_THAT(page, Not(HasSubstr("data:image/png")));
 }

@@ -65,6 +65,7 @@ bool may_compare_times(const Machine& old_one, const Machine& new_one);
 
 /// \param has_files  whether the pictures are written; then the JSON names their files
 nlohmann::ordered_json json_of(const AccuracyReport& report, bool has_files);
+nlohmann::ordered_json json_of(const accuracy::Experiment& experiment, bool has_files);
 
 /// Reads a report. Its pictures get only their titles. Unknown content is ignored.
 ///

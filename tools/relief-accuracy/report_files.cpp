@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -25,9 +26,13 @@ using namespace relief::detail;
 
 namespace {
 
-using Row = std::vector<std::string>;
-
-std::string csv_quoted(const std::string& text) {
+/// Returns a cell of a CSV table. Numbers are the shortest texts that are read as the same number.
+std::string csv_cell(const Json& value) {
+    if (value.is_number_float())
+        return std::isfinite(value.get<double>()) ? fmt::format("{}", value.get<double>()) : "";
+    if (value.is_null()) return "";
+    if (value.is_boolean()) return value.get<bool>() ? "1" : "0";
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string cell = "\"";
     for (const char letter : text)
@@ -35,60 +40,58 @@ std::string csv_quoted(const std::string& text) {
     return cell + "\"";
 }
 
-std::string line_of(const Row& row) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-        if (i > 0) line += ',';
-        line += csv_quoted(row[i]);
-    }
-    return line + "\n";
+std::string csv_line(const std::vector<Json>& cells) {
+    std::vector<std::string> texts;
+    for (const Json& cell : cells)
+        texts.push_back(csv_cell(cell));
+    return fmt::format("{}\n", fmt::join(texts, ","));
 }
 
-/// Returns the shortest text that is read as the same number.
-std::string csv_number(double value) {
-    return std::isfinite(value) ? fmt::format("{}", value) : "";
-}
+/// The columns of the table of measurements: the name, and the path in the JSON of an experiment or
+/// of a measurement.
+struct CsvColumn {
+    const char* name;
+    const char* path;
+    bool is_of_experiment = false;
+};
+constexpr std::array csv_columns = {CsvColumn{"experiment", "/id", true},
+                                    CsvColumn{"subject", "/subject", true},
+                                    CsvColumn{"method", "/method"},
+                                    CsvColumn{"choices", "/choices"},
+                                    CsvColumn{"error_unit", "/error_unit", true},
+                                    CsvColumn{"count", "/error/count"},
+                                    CsvColumn{"undefined", "/error/undefined"},
+                                    CsvColumn{"rms", "/error/rms"},
+                                    CsvColumn{"mean", "/error/mean"},
+                                    CsvColumn{"p99", "/error/p99"},
+                                    CsvColumn{"max", "/error/max"},
+                                    CsvColumn{"psnr", "/error/psnr"},
+                                    CsvColumn{"item", "/item", true},
+                                    CsvColumn{"items", "/items", true},
+                                    CsvColumn{"one_thread_seconds", "/cost/one_thread/median"},
+                                    CsvColumn{"one_thread_p10", "/cost/one_thread/p10"},
+                                    CsvColumn{"one_thread_p90", "/cost/one_thread/p90"},
+                                    CsvColumn{"one_thread_rounds", "/cost/one_thread/rounds"},
+                                    CsvColumn{"all_threads_seconds", "/cost/all_threads/median"},
+                                    CsvColumn{"all_threads_p10", "/cost/all_threads/p10"},
+                                    CsvColumn{"all_threads_p90", "/cost/all_threads/p90"},
+                                    CsvColumn{"all_threads_rounds", "/cost/all_threads/rounds"},
+                                    CsvColumn{"peak_bytes", "/cost/peak_bytes"},
+                                    CsvColumn{"stored_bytes", "/cost/stored_bytes"},
+                                    CsvColumn{"efficient", "/efficient"}};
 
-std::string choices_of(const Measurement& one) {
+/// Returns the value of a column: "a=b; c=d" for choices, and the number of rounds.
+Json csv_value(const Json& experiment, const Json& measurement, const CsvColumn& column) {
+    const Json::json_pointer path(column.path);
+    const Json& owner = column.is_of_experiment ? experiment : measurement;
+    if (!owner.contains(path)) return nullptr;
+    const Json& value = owner.at(path);
+    if (value.is_array()) return value.size();
+    if (!value.is_object()) return value;
     std::string text;
-    for (const auto& [choice, value] : one.choices)
-        text += fmt::format("{}{}={}", text.empty() ? "" : "; ", choice, value);
+    for (const auto& [choice, name] : value.items())
+        text += (text.empty() ? "" : "; ") + choice + "=" + name.get<std::string>();
     return text;
-}
-
-void add_times(Row& row, const std::optional<Timing>& timing) {
-    if (!timing) {
-        row.insert(row.end(), 4, "");
-        return;
-    }
-    const TimeStatistics spread = timing->spread();
-    for (const double seconds : {spread.median, spread.p10, spread.p90})
-        row.push_back(csv_number(seconds));
-    row.push_back(fmt::to_string(spread.count));
-}
-
-Row row_of(const Experiment& experiment, const Measurement& one) {
-    const ErrorStats& error = one.error;
-    Row row = {experiment.id,
-               std::string(enum_name(experiment.subject)),
-               one.method,
-               choices_of(one),
-               experiment.error_unit,
-               fmt::to_string(error.count),
-               fmt::to_string(error.undefined),
-               csv_number(error.rms),
-               csv_number(error.mean),
-               csv_number(error.p99),
-               csv_number(error.max),
-               error.psnr ? csv_number(*error.psnr) : "",
-               experiment.item,
-               csv_number(experiment.items)};
-    add_times(row, one.cost.one_thread);
-    add_times(row, one.cost.all_threads);
-    row.push_back(one.cost.peak_bytes ? fmt::to_string(*one.cost.peak_bytes) : "");
-    row.push_back(one.cost.stored_bytes > 0.0 ? csv_number(one.cost.stored_bytes) : "");
-    row.emplace_back(one.is_pareto_optimal ? "1" : "0");
-    return row;
 }
 
 const char* role_name(PictureRole role) {
@@ -125,48 +128,31 @@ void write_pictures(const std::filesystem::path& folder, const AccuracyReport& r
 }  // namespace
 
 std::string measurements_csv(const AccuracyReport& report) {
-    std::string text = line_of({"experiment",
-                                "subject",
-                                "method",
-                                "choices",
-                                "error_unit",
-                                "count",
-                                "undefined",
-                                "rms",
-                                "mean",
-                                "p99",
-                                "max",
-                                "psnr",
-                                "item",
-                                "items",
-                                "one_thread_seconds",
-                                "one_thread_p10",
-                                "one_thread_p90",
-                                "one_thread_rounds",
-                                "all_threads_seconds",
-                                "all_threads_p10",
-                                "all_threads_p90",
-                                "all_threads_rounds",
-                                "peak_bytes",
-                                "stored_bytes",
-                                "efficient"});
+    std::vector<Json> names;
+    for (const CsvColumn& column : csv_columns)
+        names.emplace_back(column.name);
+    std::string text = csv_line(names);
     for (const Experiment& experiment : report.experiments) {
-        for (const Measurement& one : experiment.measurements)
-            text += line_of(row_of(experiment, one));
+        const Json json = json_of(experiment, false);
+        for (const Json& measurement : json.at("measurements")) {
+            std::vector<Json> cells;
+            for (const CsvColumn& column : csv_columns)
+                cells.push_back(csv_value(json, measurement, column));
+            text += csv_line(cells);
+        }
     }
     return text;
 }
 
 std::string curves_csv(const AccuracyReport& report) {
     std::string text =
-        line_of({"experiment", "chart", "method", "x_label", "x", "error_unit", "error"});
+        csv_line({"experiment", "chart", "method", "x_label", "x", "error_unit", "error"});
     for (const Experiment& experiment : report.experiments) {
         for (const Chart& chart : experiment.charts) {
             for (const Curve& curve : chart.curves) {
                 for (const CurvePoint& point : curve.points)
-                    text += line_of({experiment.id, chart.id, curve.method, chart.x_label,
-                                     csv_number(point.x), experiment.error_unit,
-                                     csv_number(point.error)});
+                    text += csv_line({experiment.id, chart.id, curve.method, chart.x_label, point.x,
+                                      experiment.error_unit, point.error});
             }
         }
     }
@@ -206,110 +192,38 @@ std::vector<std::filesystem::path> write_report(const std::filesystem::path& fol
 
 namespace {
 
-/// A column of cells. Numbers are aligned to the right.
-struct TextColumn {
-    std::string heading;
-    std::vector<std::string> cells;
-    bool is_text = false;
-
-    [[nodiscard]] bool empty() const {
-        return std::all_of(cells.begin(), cells.end(),
-                           [](const std::string& cell) { return cell.empty(); });
-    }
-    /// Returns the width in code points of UTF-8.
-    [[nodiscard]] std::size_t width() const {
-        std::size_t width = letters_of(heading);
-        for (const std::string& cell : cells)
-            width = std::max(width, letters_of(cell));
-        return width;
-    }
-    static std::size_t letters_of(const std::string& text) {
-        return static_cast<std::size_t>(std::count_if(
-            text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; }));
-    }
-};
-
-std::string padded(const std::string& text, std::size_t width, bool is_text) {
-    const std::string space(width - TextColumn::letters_of(text), ' ');
-    return is_text ? text + space : space + text;
+/// Returns the number of code points of UTF-8.
+std::size_t letters_of(const std::string& text) {
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; }));
 }
 
-std::string line_of(const std::vector<TextColumn>& columns, const std::string& begin,
-                    const std::vector<std::size_t>& widths, std::size_t row, bool is_heading) {
-    std::string line = begin;
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-        const TextColumn& column = columns[i];
-        const std::string& text = is_heading ? column.heading : column.cells[row];
-        if (i > 0) line += "  ";
-        line += padded(text, widths[i], column.is_text);
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    return line + "\n";
-}
-
-std::string table_number(double value) {
-    return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-";
-}
-
-/// Returns the range from the 10th to the 90th percentile: "11.9–12.8 ms".
-std::string time_statistics(const std::optional<Timing>& timing) {
-    if (!timing) return "";
-    const TimeStatistics spread = timing->spread();
-    return range_text(spread.p10, spread.p90);
-}
-
-/// Returns the expected error, "1.35", or its range, "1.35–8.5".
-std::string expected_text(const Experiment& experiment, const Measurement& one) {
-    if (!one.expected) return "";
-    const std::optional<double>& upper = experiment.reference_error_upper;
-    return table_number(one.expected->total()) +
-           (upper ? "–" + table_number(ExpectedError{*upper, one.expected->added}.total()) : "");
-}
-
-std::string median_of(const std::optional<Timing>& timing) {
-    return timing ? format_seconds(timing->spread().median) : "";
-}
-
-std::vector<TextColumn> columns_of(const Experiment& experiment) {
-    std::vector<TextColumn> columns = {
-        {"", {}, true},    {"RMS", {}},      {"mean", {}},   {"99 %", {}},     {"max", {}},
-        {"undefined", {}}, {"expected", {}}, {"PSNR", {}},   {"1 thread", {}}, {"", {}},
-        {"all", {}},       {"", {}},         {"memory", {}}, {"stored", {}}};
-    for (const Measurement& one : experiment.measurements) {
-        const ErrorStats& error = one.error;
-        const std::vector<std::string> cells = {
-            one.method,
-            table_number(error.rms),
-            table_number(error.mean),
-            table_number(error.p99),
-            table_number(error.max),
-            error.undefined > 0 ? fmt::to_string(error.undefined) : "",
-            expected_text(experiment, one),
-            error.psnr ? fmt::format("{:.1f} dB", *error.psnr) : "",
-            median_of(one.cost.one_thread),
-            time_statistics(one.cost.one_thread),
-            median_of(one.cost.all_threads),
-            time_statistics(one.cost.all_threads),
-            one.cost.peak_bytes ? byte_size(*one.cost.peak_bytes) : "",
-            one.cost.stored_bytes > 0.0 ? fmt::format("{:.3g} B", one.cost.stored_bytes) : ""};
-        for (std::size_t i = 0; i < columns.size(); ++i)
-            columns[i].cells.push_back(cells[i]);
-    }
-    std::erase_if(columns, [](const TextColumn& column) { return column.empty(); });
-    return columns;
-}
-
+/// Returns the table of methods. The names are aligned to the left, numbers to the right; rows of
+/// efficient methods begin with an asterisk.
 std::string rows_of(const Experiment& experiment) {
-    if (experiment.measurements.empty()) return "";
-    const std::vector<TextColumn> columns = columns_of(experiment);
-    std::vector<std::size_t> widths;
-    widths.reserve(columns.size());
-    for (const TextColumn& column : columns)
-        widths.push_back(column.width());
-    std::string text = line_of(columns, "    ", widths, 0, true);
-    for (std::size_t row = 0; row < experiment.measurements.size(); ++row) {
-        const Measurement& one = experiment.measurements[row];
-        text += line_of(columns, one.is_pareto_optimal ? "  * " : "    ", widths, row, false);
+    const MethodTable table = method_table(json_of(experiment, false));
+    std::vector<std::vector<std::string>> rows = {{""}};
+    rows[0].insert(rows[0].end(), table.columns.begin(), table.columns.end());
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+        rows.push_back({experiment.measurements[i].method});
+        for (const MethodCell& cell : table.rows[i])
+            rows.back().push_back(cell.text + (cell.range.empty() ? "" : " (" + cell.range + ")"));
+    }
+    std::vector<std::size_t> widths(rows[0].size());
+    for (const std::vector<std::string>& row : rows) {
+        for (std::size_t c = 0; c < row.size(); ++c)
+            widths[c] = std::max(widths[c], letters_of(row[c]));
+    }
+    std::string text;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+        std::string line =
+            r > 0 && experiment.measurements[r - 1].is_pareto_optimal ? "  * " : "    ";
+        for (std::size_t c = 0; c < rows[r].size(); ++c) {
+            const std::string space(widths[c] - letters_of(rows[r][c]), ' ');
+            line += c == 0 ? rows[r][c] + space : "  " + space + rows[r][c];
+        }
+        line.erase(line.find_last_not_of(' ') + 1);
+        text += line + "\n";
     }
     return text;
 }
@@ -339,8 +253,8 @@ std::string notes_of(const Experiment& experiment) {
 std::string line_of(const Curve& curve) {
     std::string text = curve.method + ":";
     if (curve.points.size() > 1) {
-        text += fmt::format(" {} at {:.4g}, {} at {:.4g}", table_number(curve.points.front().error),
-                            curve.points.front().x, table_number(curve.points.back().error),
+        text += fmt::format(" {} at {:.4g}, {} at {:.4g}", number_text(curve.points.front().error),
+                            curve.points.front().x, number_text(curve.points.back().error),
                             curve.points.back().x);
     }
     if (curve.order) text += fmt::format(", order {:.2f}", *curve.order);
@@ -367,7 +281,7 @@ std::string table_of(const Experiment& experiment) {
                               *experiment.reference_error_upper)
                 : "");
     }
-    text += rows_of(experiment);
+    if (!experiment.measurements.empty()) text += rows_of(experiment);
     text += notes_of(experiment);
     for (const Chart& chart : experiment.charts) {
         text += fmt::format("  {} (by {})\n", chart.title, chart.x_label);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// A report as one HTML page with all numbers, pictures, style and script, which loads nothing.
-///
-/// Tables, text, plots and pictures are HTML and SVG. The script (page/page.js) adds tooltips,
-/// sorting and filters, so that the page can be read and printed without it.
+/// A report as one HTML page with all numbers, plots, pictures, style and script, which loads
+/// nothing; and the table of an experiment's methods, which is the same on the page, in documents
+/// and on a terminal. The script (page/page.js) only adds filters and sorting.
 /// Tests: tests/tools/accuracy_page/report_html_test.cpp, and report_page_test.py in a browser.
 #pragma once
 
@@ -16,21 +15,13 @@
 
 namespace relief::tools {
 
-// Texts of the page.
-
 /// Returns text for elements and quoted attributes, with entities for & < > " '.
 std::string html_escaped(std::string_view text);
-
-/// "data:image/png;base64,..."
-std::string data_uri(std::string_view bytes, std::string_view type);
 
 /// Returns a number with three digits, "0.0123", "45.6", "12300"; as a whole number, "8192"; or
 /// with an exponent, "1.23e-05", below 0.001 and from a million. Missing and non-finite values are
 /// "–".
 std::string number_text(std::optional<double> value);
-
-/// Returns format_seconds(), "850 ns", "12.3 µs", or "–" for a missing value.
-std::string seconds_text(std::optional<double> seconds);
 
 /// Returns a range of times with a common unit if possible: "11.9–12.8 ms", "990 µs–1.02 ms".
 std::string range_text(double from, double to);
@@ -39,12 +30,17 @@ std::string range_text(double from, double to);
 /// missing value.
 std::string bytes_text(std::optional<double> bytes);
 
-// The page.
+/// A value of a method: "2.00 ms", and for times the range from the 10th to the 90th percentile.
+struct MethodCell {
+    std::string text{};
+    std::string range{};
+    std::optional<double> value{};
+};
 
-/// The table of an experiment's methods as texts, without ranges of times and notes.
+/// The table of an experiment's methods. Columns without values are omitted.
 struct MethodTable {
-    std::vector<std::string> columns;
-    std::vector<std::vector<std::string>> rows;  ///< One for each measurement.
+    std::vector<std::string> columns{};
+    std::vector<std::vector<MethodCell>> rows{};  ///< One for each measurement.
 };
 MethodTable method_table(const nlohmann::ordered_json& experiment);
 

@@ -113,7 +113,7 @@ constexpr std::array figure_columns = {
     FigureColumn{"stored", "/cost/stored_bytes"}};
 
 /// \param shown  "0.453", "28 B", "100 (35 %)", or "–" without a value
-void expect_number(const std::string& shown, const plots::Value& value, const std::string& what) {
+void expect_number(const std::string& shown, const Value& value, const std::string& what) {
     const std::string number = shown.substr(0, shown.find(' '));
     if (number == "–" || !value) {
         EXPECT_EQ(number == "–", !value) << what;
@@ -137,7 +137,7 @@ std::size_t compare_with_the_page(const Page& page, const nlohmann::ordered_json
         ++compared;
         for (const auto& [head, path, upper_path] : figure_columns) {
             const std::string what = id + ": " + method + ": " + head;
-            const plots::Value value = plots::number_at(measurement, path);
+            const Value value = number_at(measurement, path);
             const auto cell = row->second.find(head);
             if (cell == row->second.end()) {
                 EXPECT_TRUE(std::string(head) != "undefined" || value == 0.0) << what;
@@ -149,7 +149,7 @@ std::size_t compare_with_the_page(const Page& page, const nlohmann::ordered_json
             expect_number(dash == std::string::npos
                               ? "–"
                               : cell->second.substr(dash + std::string("–").size()),
-                          plots::number_at(measurement, upper_path), what);
+                          number_at(measurement, upper_path), what);
         }
     }
     return compared;

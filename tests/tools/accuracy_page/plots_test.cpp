@@ -12,10 +12,6 @@
 namespace relief::tools {
 namespace {
 
-using plots::Area;
-using plots::Axis;
-using plots::tick_text;
-using plots::ticks_of;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
@@ -50,24 +46,22 @@ TEST(PlotTicks, HaveUnitsOrPowersOfTen) {
 }
 
 TEST(PlotAxis, UnplottableValuesHaveStrips) {
-    const Area area;
-    const Axis plain = plots::y_axis(area, {0.01, 1.0});
-    EXPECT_NEAR(plain.place(0.1), (area.top + area.bottom) / 2.0, 1e-9);
+    const Axis plain = y_axis({0.01, 1.0});
+    EXPECT_NEAR(plain.place(0.1), (plain.from + plain.to) / 2.0, 1e-9);
     EXPECT_GT(plain.place(0.01), plain.place(1.0)) << "errors grow upwards";
     EXPECT_FALSE(plain.has_zero);
     EXPECT_FALSE(plain.has_missing);
-    const Axis strips = plots::y_axis(area, {0.01, 1.0, 0.0, {}, NAN});
-    EXPECT_DOUBLE_EQ(strips.place(0.0), area.bottom - 17.0);
-    EXPECT_DOUBLE_EQ(strips.place({}), area.top + 17.0);
-    EXPECT_DOUBLE_EQ(strips.place(NAN), area.top + 17.0);
-    EXPECT_LT(strips.place(0.01), area.bottom - 34.0);
-    EXPECT_GT(strips.place(1.0), area.top + 34.0);
+    const Axis strips = y_axis({0.01, 1.0, 0.0, {}, NAN});
+    EXPECT_DOUBLE_EQ(strips.place(0.0), plain.from - 17.0);
+    EXPECT_DOUBLE_EQ(strips.place({}), plain.to + 17.0);
+    EXPECT_DOUBLE_EQ(strips.place(NAN), plain.to + 17.0);
+    EXPECT_LT(strips.place(0.01), plain.from - 34.0);
+    EXPECT_GT(strips.place(1.0), plain.to + 34.0);
 }
 
 TEST(PlotAxis, AllEqualValuesAreInTheMiddle) {
-    const Area area;
-    EXPECT_NEAR(plots::x_axis(area, {3.0, 3.0}, true, "").place(3.0), 435.0, 1e-9);
-    EXPECT_NEAR(plots::x_axis(area, {0.0}, false, "").place(0.0), 435.0, 1e-9);
+    EXPECT_NEAR(x_axis({3.0, 3.0}, true, "").place(3.0), 435.0, 1e-9);
+    EXPECT_NEAR(x_axis({0.0}, false, "").place(0.0), 435.0, 1e-9);
 }
 
 class PlotFiles : public testing::Test {
@@ -85,7 +79,7 @@ class PlotFiles : public testing::Test {
 };
 
 TEST_F(PlotFiles, MethodsHaveStyleLegendAndFrontier) {
-    const std::string svg = scatter_picture(report_["experiments"][0]);
+    const std::string svg = svg_file(scatter_plot(report_["experiments"][0], {}));
     EXPECT_THAT(svg, HasSubstr("<title>RMS error against time on one thread: 6 methods. "
                                "Efficient: area, float32; max, float32.</title>"));
     EXPECT_THAT(svg, HasSubstr("--hue: light-dark(#1668a8, #5aa9e6)"));
@@ -97,13 +91,13 @@ TEST_F(PlotFiles, MethodsHaveStyleLegendAndFrontier) {
     EXPECT_THAT(svg, Not(HasSubstr("class=\"reach\"")));
 }
 
-TEST_F(PlotFiles, CurvesAreLabeledAtTheirEnds) {
-    const std::string svg = chart_picture(report_["experiments"][0]["charts"][1]);
+TEST_F(PlotFiles, CurvesHaveBoundsBreaksAndLegend) {
+    const std::string svg = svg_file(curves_plot(report_["experiments"][0]["charts"][1], {}));
     EXPECT_THAT(svg, HasSubstr("<title>RMS error, degrees against scale: float32, breaks at 10⁻¹⁵; "
                                "exact.</title>"));
     EXPECT_EQ(count(svg, "<g class=\"point"), 8U);
     EXPECT_EQ(count(svg, "class=\"breaks\""), 1U);
-    EXPECT_EQ(count(svg, "class=\"end-name"), 2U);
+    EXPECT_EQ(count(svg, "<text class=\"legend"), 2U);
     EXPECT_THAT(svg, HasSubstr(">bound 0.01</text>"));
 }
 
@@ -111,10 +105,10 @@ TEST_F(PlotFiles, EscapeNames) {
     nlohmann::ordered_json experiment = report_["experiments"][1];
     experiment["measurements"][0]["method"] = "<8> & \"bit\"";
     experiment["error_unit"] = "<b>";
-    const std::string svg = scatter_picture(experiment);
+    const std::string svg = svg_file(scatter_plot(experiment, {}));
     EXPECT_THAT(svg, HasSubstr("&lt;8&gt; &amp; &quot;bit&quot;"));
     EXPECT_THAT(svg, Not(HasSubstr("<b>")));
-    EXPECT_THAT(scatter_figure(experiment, {"<tip>\nRMS: 1", "other"}),
+    EXPECT_THAT(plot_html(scatter_plot(experiment, {"<tip>\nRMS: 1", "other"})),
                 HasSubstr("<title>&lt;tip&gt;\nRMS: 1</title>"));
 }
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <regex>
 
 #include "relief/mesh/report.h"
@@ -20,19 +21,6 @@ using testing::Not;
 
 TEST(HtmlText, EscapesMarkup) {
     EXPECT_EQ(html_escaped("a<b> & \"c\" 'd'"), "a&lt;b&gt; &amp; &quot;c&quot; &#39;d&#39;");
-}
-
-TEST(HtmlText, DataUrisHaveTheBase64OfRfc4648) {
-    const auto base64 = [](const char* text) {
-        return data_uri(text, "t").substr(std::string("data:t;base64,").size());
-    };
-    EXPECT_EQ(base64(""), "");
-    EXPECT_EQ(base64("f"), "Zg==");
-    EXPECT_EQ(base64("fo"), "Zm8=");
-    EXPECT_EQ(base64("foo"), "Zm9v");
-    EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
-    EXPECT_EQ(base64("\xFF\xFE\xFB"), "//77");
-    EXPECT_EQ(data_uri("f", "image/png"), "data:image/png;base64,Zg==");
 }
 
 TEST(HtmlText, NumbersHaveThreeDigits) {
@@ -85,9 +73,7 @@ TEST_F(ReportHtml, IsSelfContained) {
          ++match) {
         const std::string target = (*match)[2];
         pictures += target.starts_with("data:image/png;base64,") ? 1U : 0U;
-        EXPECT_TRUE(target.starts_with("data:") || target.starts_with("#") ||
-                    target == "accuracy.csv" || target == "accuracy.json")
-            << target.substr(0, 80);
+        EXPECT_TRUE(target.starts_with("data:") || target.starts_with("#")) << target.substr(0, 80);
     }
     EXPECT_EQ(pictures, 3U);
     EXPECT_THAT(page_, Not(HasSubstr("url(")));
@@ -134,23 +120,29 @@ TEST_F(ReportHtml, CommonNotesAppearOnce) {
 TEST_F(ReportHtml, UndefinedResultsHaveTheirFraction) {
     EXPECT_THAT(page_, HasSubstr(">undefined</th>"));
     EXPECT_THAT(page_, HasSubstr("0.0500</td><td data-value=\"2\">2 (2 %)</td>"));
-    EXPECT_THAT(page_, HasSubstr("Undefined results are counted, and excluded from the other"));
 }
 
-TEST_F(ReportHtml, SummaryHasBothPartsOfAnErrorAndFindings) {
+TEST_F(ReportHtml, PicturesAreInTheBase64OfRfc4648) {
+    for (const auto& [bytes, text] :
+         {std::pair("", ""), std::pair("f", "Zg=="), std::pair("fo", "Zm8="),
+          std::pair("foobar", "Zm9vYmFy"), std::pair("\xFF\xFE\xFB", "//77")}) {
+        std::ofstream(folder_ / "pictures/heat.png") << bytes;
+        EXPECT_THAT(report_html(report_, folder_.path()),
+                    HasSubstr("<img src=\"data:image/png;base64," + std::string(text) + "\""));
+    }
+}
+
+TEST_F(ReportHtml, SummaryHasFindingsOfMethodsAndInputs) {
     auto& own = report_["experiments"][1];
     own["finding"] = "xyz: 0.5 degrees RMS expected (the map itself 0.3, this method adds 0.4).";
     own["input_findings"] = {"2 x non-finite height (texel 5, 17): read as <0>"};
     own["measurements"][0]["expected_error"] = {{"map", 0.3}, {"added", 0.4}, {"total", 0.5}};
     page_ = report_html(report_, folder_.path());
-    const std::string summary =
-        page_.substr(page_.find("heading-summary"),
-                     page_.find("class=\"machine\"") - page_.find("heading-summary"));
+    const std::string summary = page_.substr(0, page_.find("id=\"machine\""));
     EXPECT_THAT(summary, HasSubstr("expected (the map itself 0.3, this method adds 0.4)"));
     EXPECT_THAT(summary, HasSubstr("(texel 5, 17): read as &lt;0&gt;"));
     EXPECT_THAT(page_, HasSubstr(">expected</th>"));
     EXPECT_THAT(page_, HasSubstr("<td data-value=\"0.5\">0.500</td>"));
-    EXPECT_THAT(page_, HasSubstr("Expected is the root of the sum of squares of the"));
 }
 
 TEST_F(ReportHtml, OmitsEmptyColumns) {
@@ -173,7 +165,7 @@ TEST_F(ReportHtml, ChartsHaveTheirNumbersAsTables) {
 
 TEST_F(ReportHtml, LinksLeadToExperiments) {
     EXPECT_THAT(page_, HasSubstr(R"(<a href="#normals/sample">A torus</a>)"));
-    EXPECT_THAT(page_, HasSubstr(R"(<article class="experiment" id="normals/sample")"));
+    EXPECT_THAT(page_, HasSubstr(R"(<article id="normals/sample">)"));
 }
 
 TEST_F(ReportHtml, AMissingPictureIsNamed) {
