@@ -157,15 +157,6 @@ bool differs(double before, double after) {
     return !(std::abs(after - before) <= std::max(absolute_rounding, relative_rounding * size));
 }
 
-/// Compares positions on the x axis, which may be tiny or zero.
-bool is_same_position(double a, double b) {
-    return std::abs(a - b) <= relative_rounding * std::max(std::abs(a), std::abs(b));
-}
-
-void add_if_changed(MethodChange& change, const std::string& figure, double before, double after) {
-    if (differs(before, after)) change.figures.push_back({figure, before, after});
-}
-
 /// The first element whose `name` is `value`, or nullptr.
 template <typename Element>
 const Element* find_by(std::string Element::*name, const std::string& value,
@@ -175,99 +166,79 @@ const Element* find_by(std::string Element::*name, const std::string& value,
     return found == all.end() ? nullptr : &*found;
 }
 
-/// The curve of another run with the same chart and method, or nullptr.
-const Curve* same_curve(const Experiment& other, const Chart& chart, const Curve& curve) {
-    const Chart* same_chart = find_by(&Chart::id, chart.id, other.charts);
-    return same_chart == nullptr ? nullptr
-                                 : find_by(&Curve::method, curve.method, same_chart->curves);
-}
+struct Figure {
+    std::string name;
+    double value = 0.0;
+};
 
-const CurvePoint* find_point(const Curve& curve, double x) {
-    const auto found =
-        std::find_if(curve.points.begin(), curve.points.end(),
-                     [&](const CurvePoint& one) { return is_same_position(one.x, x); });
-    return found == curve.points.end() ? nullptr : &*found;
-}
+/// The errors of a method, or of a curve.
+struct Figures {
+    std::string chart;  ///< Empty for a method.
+    std::string method;
+    std::string name;  ///< "EXPERIMENT: METHOD", "EXPERIMENT, chart ID: METHOD"
+    std::vector<Figure> values;
+};
 
-std::string position_name(const CurvePoint& point) {
-    return fmt::format("at {:.4g}", point.x);
-}
-
-MethodChange change_of(const Experiment& experiment, const Chart& chart, const Curve& before,
-                       const Curve& after) {
-    MethodChange change{experiment.id, chart.id, before.method, {}};
-    for (const CurvePoint& point : before.points) {
-        if (const CurvePoint* same = find_point(after, point.x))
-            add_if_changed(change, position_name(point), point.error, same->error);
+std::vector<Figures> figures_of(const Experiment& experiment) {
+    std::vector<Figures> all;
+    for (const Measurement& one : experiment.measurements) {
+        const ErrorStats& error = one.error;
+        all.push_back({"",
+                       one.method,
+                       experiment.id + ": " + one.method,
+                       {{"rms", error.rms},
+                        {"mean", error.mean},
+                        {"p99", error.p99},
+                        {"max", error.max},
+                        {"undefined", static_cast<double>(error.undefined)}}});
     }
-    return change;
-}
-
-/// The difference of the errors of one method; may have no figures.
-MethodChange change_of(const Experiment& experiment, const Measurement& before,
-                       const Measurement& after) {
-    MethodChange change{experiment.id, "", before.method, {}};
-    const ErrorStats& old_error = before.error;
-    const ErrorStats& new_error = after.error;
-    add_if_changed(change, "rms", old_error.rms, new_error.rms);
-    add_if_changed(change, "mean", old_error.mean, new_error.mean);
-    add_if_changed(change, "p99", old_error.p99, new_error.p99);
-    add_if_changed(change, "max", old_error.max, new_error.max);
-    add_if_changed(change, "undefined", static_cast<double>(old_error.undefined),
-                   static_cast<double>(new_error.undefined));
-    return change;
-}
-
-/// The curves of both experiments that differ, with the points that differ.
-std::vector<MethodChange> curve_changes(const Experiment& before, const Experiment& after) {
-    std::vector<MethodChange> changes;
-    for (const Chart& chart : before.charts) {
-        for (const Curve& curve : chart.curves) {
-            const Curve* same = same_curve(after, chart, curve);
-            if (same == nullptr) continue;
-            MethodChange change = change_of(before, chart, curve, *same);
-            if (!change.figures.empty()) changes.push_back(std::move(change));
-        }
-    }
-    return changes;
-}
-
-/// Curves without a partner in the other run: "EXPERIMENT, chart ID: METHOD", or with " at X" for a
-/// single point.
-std::vector<std::string> curves_missing_from(const Experiment& other,
-                                             const Experiment& experiment) {
-    std::vector<std::string> names;
     for (const Chart& chart : experiment.charts) {
         for (const Curve& curve : chart.curves) {
-            const std::string name =
-                fmt::format("{}, chart {}: {}", experiment.id, chart.id, curve.method);
-            const Curve* same = same_curve(other, chart, curve);
-            if (same == nullptr) {
-                names.push_back(name);
-                continue;
-            }
-            for (const CurvePoint& point : curve.points) {
-                if (find_point(*same, point.x) == nullptr)
-                    names.push_back(name + " " + position_name(point));
-            }
+            Figures& figures = all.emplace_back(
+                Figures{chart.id,
+                        curve.method,
+                        fmt::format("{}, chart {}: {}", experiment.id, chart.id, curve.method),
+                        {}});
+            for (const CurvePoint& point : curve.points)
+                figures.values.push_back({fmt::format("at {:.4g}", point.x), point.error});
         }
     }
-    return names;
+    return all;
 }
 
-/// "EXPERIMENT: METHOD" for each method that is in one run and not in the other.
-std::vector<std::string> missing_from(const std::vector<Experiment>& other,
-                                      const std::vector<Experiment>& all) {
-    std::vector<std::string> names;
-    for (const Experiment& experiment : all) {
-        const Experiment* same = find_by(&Experiment::id, experiment.id, other);
-        for (const Measurement& one : experiment.measurements) {
-            if (same == nullptr ||
-                find_by(&Measurement::method, one.method, same->measurements) == nullptr)
-                names.push_back(experiment.id + ": " + one.method);
+/// Adds the methods, curves and points of an experiment that the other run does not have. Without
+/// the experiment these are all methods.
+void add_missing(std::vector<std::string>& names, const Experiment& experiment,
+                 const Experiment* other) {
+    const std::vector<Figures> others =
+        other == nullptr ? std::vector<Figures>() : figures_of(*other);
+    for (const Figures& figures : figures_of(experiment)) {
+        const Figures* same = find_by(&Figures::name, figures.name, others);
+        if (same == nullptr && (other != nullptr || figures.chart.empty()))
+            names.push_back(figures.name);
+        if (same == nullptr) continue;
+        for (const Figure& figure : figures.values) {
+            if (find_by(&Figure::name, figure.name, same->values) == nullptr)
+                names.push_back(figures.name + " " + figure.name);
         }
     }
-    return names;
+}
+
+/// Adds the methods and curves of both runs that differ, with the figures that differ.
+void add_changes(std::vector<MethodChange>& changes, const Experiment& before,
+                 const Experiment& after) {
+    const std::vector<Figures> others = figures_of(after);
+    for (const Figures& figures : figures_of(before)) {
+        MethodChange change{before.id, figures.chart, figures.method, {}};
+        const Figures* same = find_by(&Figures::name, figures.name, others);
+        if (same == nullptr) continue;
+        for (const Figure& figure : figures.values) {
+            const Figure* is = find_by(&Figure::name, figure.name, same->values);
+            if (is != nullptr && differs(figure.value, is->value))
+                change.figures.push_back({figure.name, figure.value, is->value});
+        }
+        if (!change.figures.empty()) changes.push_back(std::move(change));
+    }
 }
 
 bool has_same_input(const Experiment& a, const Experiment& b) {
@@ -329,34 +300,31 @@ void add_memory(ReportComparison& result, const std::string& experiment, const M
 ReportComparison compare_reports(const std::vector<Experiment>& before,
                                  const std::vector<Experiment>& after) {
     ReportComparison result;
-    result.gone = missing_from(after, before);
-    result.added = missing_from(before, after);
     std::vector<MethodPair> pairs;
     std::set<Subject> subjects;
+    for (const Experiment& new_one : after) {
+        const Experiment* old_one = find_by(&Experiment::id, new_one.id, before);
+        if (old_one == nullptr || has_same_input(*old_one, new_one))
+            add_missing(result.added, new_one, old_one);
+    }
     for (const Experiment& old_one : before) {
         const Experiment* new_one = find_by(&Experiment::id, old_one.id, after);
-        if (new_one == nullptr) continue;
-        if (!has_same_input(old_one, *new_one)) {
+        if (new_one != nullptr && !has_same_input(old_one, *new_one)) {
             result.other_input.push_back(old_one.id);
             continue;
         }
+        add_missing(result.gone, old_one, new_one);
+        if (new_one == nullptr) continue;
+        add_changes(result.errors, old_one, *new_one);
         subjects.insert(old_one.subject);
         for (const Measurement& was : old_one.measurements) {
             const Measurement* is =
                 find_by(&Measurement::method, was.method, new_one->measurements);
             if (is == nullptr) continue;
             ++result.methods;
-            MethodChange change = change_of(old_one, was, *is);
-            if (!change.figures.empty()) result.errors.push_back(std::move(change));
             add_memory(result, old_one.id, was, *is);
             pairs.push_back({old_one.subject, was, *is});
         }
-        for (MethodChange& change : curve_changes(old_one, *new_one))
-            result.errors.push_back(std::move(change));
-        for (std::string& name : curves_missing_from(*new_one, old_one))
-            result.gone.push_back(std::move(name));
-        for (std::string& name : curves_missing_from(old_one, *new_one))
-            result.added.push_back(std::move(name));
     }
     add_times(result, pairs, std::nullopt);
     if (subjects.size() > 1) {
