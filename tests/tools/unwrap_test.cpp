@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "relief/mesh/image_file.h"
@@ -102,6 +104,31 @@ TEST(UnwrapCommand, ReportsRepackedChartsThatOverlapThemselves) {
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("1 x chart with overlapping or inverted triangles (chart 0): "
                                       "keeps its shape"));
+}
+
+TEST(UnwrapCommand, NumbersTilesUpwards) {
+    const Workplace workplace;
+    const ProgramResult result =
+        workplace.run("relief-mesh unwrap data/vase.obj out/a.obj --size 128 --udim 11");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr(" % of 11 tiles of 128 x 128 texels used\n"));
+    // OBJ has v upwards, so that tile 1011 is in 1 to 2.
+    const std::string text = workplace.read("out/a.obj");
+    float low = 2.0F;
+    float high = -2.0F;
+    float right = 0.0F;
+    for (std::size_t at = text.find("\nvt "); at != std::string::npos;
+         at = text.find("\nvt ", at + 1)) {
+        float u = 0.0F;
+        float v = 0.0F;
+        std::istringstream(text.substr(at + 4, 60)) >> u >> v;
+        low = std::min(low, v);
+        high = std::max(high, v);
+        right = std::max(right, u);
+    }
+    EXPECT_TRUE(low > 0.0F && low < 0.2F) << low;
+    EXPECT_TRUE(high > 1.5F && high < 2.0F) << high;
+    EXPECT_TRUE(right > 9.5F && right < 10.0F) << right;
 }
 
 TEST(UnwrapCommand, SplitsAtEveryEdgeThatIsNotFlat) {

@@ -57,13 +57,14 @@ Json quality_json(const TexcoordQuality& quality) {
             {"min_distance", quality.min_distance ? Json(*quality.min_distance) : Json()}};
 }
 
-void add_stats(Summary& summary, const AtlasStats& stats, const glm::ivec2& size) {
-    summary.add("atlas",
-                {fmt::format("{}, {:.1f} % of {} x {} texels used", used_text(stats),
-                             100.0 * stats.used, size.x, size.y),
-                 fmt::format("seams: length {:.4g}, {:.3g} times the root of the area",
-                             stats.seam_length, stats.relative_seam_length)},
-                {{"atlas", stats_json(stats)}});
+void add_stats(Summary& summary, const AtlasStats& stats, const glm::ivec2& size, int tiles) {
+    summary.add(
+        "atlas",
+        {fmt::format("{}, {:.1f} % of {}{} x {} texels used", used_text(stats), 100.0 * stats.used,
+                     tiles == 1 ? "" : fmt::format("{} tiles of ", tiles), size.x, size.y),
+         fmt::format("seams: length {:.4g}, {:.3g} times the root of the area", stats.seam_length,
+                     stats.relative_seam_length)},
+        {{"atlas", stats_json(stats)}});
     summary.add("stacked",
                 stats.stacked_parts == 0
                     ? ""
@@ -126,11 +127,19 @@ void check(const AtlasPictureOptions& options, const std::vector<std::filesystem
 
 void write_picture(const AtlasPictureOptions& options, const Mesh& mesh,
                    std::span<const glm::vec2> corner_texcoords,
-                   std::span<const std::optional<std::uint32_t>> chart, const glm::ivec2& size) {
-    const double scale =
-        std::min(1.0, static_cast<double>(max_picture_side) / std::max(size.x, size.y));
-    const glm::ivec2 pixels = glm::max(glm::ivec2(glm::dvec2(size) * scale + 0.5), glm::ivec2(1));
-    write_image(*options.file, draw_atlas(mesh, corner_texcoords, chart, pixels,
+                   std::span<const std::optional<std::uint32_t>> chart, const glm::ivec2& size,
+                   int tiles) {
+    constexpr int tiles_in_a_row = 10;
+    const glm::ivec2 grid(std::min(tiles, tiles_in_a_row),
+                          (tiles + tiles_in_a_row - 1) / tiles_in_a_row);
+    const glm::dvec2 all = glm::dvec2(size) * glm::dvec2(grid);
+    const double scale = std::min(1.0, max_picture_side / std::max(all.x, all.y));
+    const glm::ivec2 pixels = glm::max(glm::ivec2(all * scale + 0.5), glm::ivec2(1));
+    // Rows of tiles go upwards, to negative v.
+    std::vector<glm::vec2> shown(corner_texcoords.begin(), corner_texcoords.end());
+    for (glm::vec2& texcoord : shown)
+        texcoord = (texcoord + glm::vec2(0.0F, static_cast<float>(grid.y - 1))) / glm::vec2(grid);
+    write_image(*options.file, draw_atlas(mesh, shown, chart, pixels,
                                           options.shows.value_or(AtlasPicture::charts)));
 }
 

@@ -24,8 +24,8 @@ Json stats_json(const AtlasStats& stats);
 /// The faults of given coordinates; the statistics are under "atlas".
 Json quality_json(const TexcoordQuality& quality);
 
-/// Adds the rows "atlas", "density" and "stretch".
-void add_stats(Summary& summary, const AtlasStats& stats, const glm::ivec2& size);
+/// Adds the rows "atlas", "stacked", "density" and "stretch". \param tiles  of UDIM
+void add_stats(Summary& summary, const AtlasStats& stats, const glm::ivec2& size, int tiles);
 
 /// One row of text for given coordinates. \param name  of the material, or empty
 std::string quality_text(const std::string& name, const TexcoordQuality& quality);
@@ -39,9 +39,11 @@ struct AtlasPictureOptions {
 void add_picture_options(CLI::App& app, AtlasPictureOptions& options);
 /// Checks the options before the work. \param files  the other files of the command
 void check(const AtlasPictureOptions& options, const std::vector<std::filesystem::path>& files);
-/// Draws the picture: as large as the map, but at most 2048 pixels wide and high.
+/// Draws the picture: as large as the map, but at most 2048 pixels wide and high. Up to ten tiles
+/// of UDIM are side by side, further ones above.
 void write_picture(const AtlasPictureOptions& options, const Mesh& mesh,
                    std::span<const glm::vec2> corner_texcoords,
-                   std::span<const std::optional<std::uint32_t>> chart, const glm::ivec2& size);
+                   std::span<const std::optional<std::uint32_t>> chart, const glm::ivec2& size,
+                   int tiles);
 
 }  // namespace relief::tools

@@ -139,6 +139,7 @@ Json options_json(const UnwrapCommand& command) {
     Json json = {{"size", {options.size.x, options.size.y}},
                  {"padding", options.padding},
                  {"align", options.alignment},
+                 {"udim", options.tiles},
                  {"density", command.density_text},
                  {"max_stretch", options.max_stretch},
                  {"split_materials", options.split_materials},
@@ -216,7 +217,7 @@ ExitCode unwrap_model(const CLI::App& app, const UnwrapCommand& command) {
                 if (command.picture.file)
                     stages.run("draw", [&] {
                         write_picture(command.picture, input.mesh, unwrapped.corner_texcoords,
-                                      unwrapped.chart, options.size);
+                                      unwrapped.chart, options.size, options.tiles);
                     });
                 return std::move(unwrapped.corner_texcoords);
             });
@@ -238,7 +239,7 @@ ExitCode unwrap_model(const CLI::App& app, const UnwrapCommand& command) {
                             counted(changed.triangles, "triangle"),
                             counted(changed.vertices_read, "vertex", "vertices")),
                 {{"triangles", changed.triangles}, {"vertices_read", changed.vertices_read}});
-    add_stats(summary, stats, options.size);
+    add_stats(summary, stats, options.size, options.tiles);
     add_padding(summary, options.padding);
     summary.add("result",
                 fmt::format("{}", counted(changed.vertices_written, "vertex", "vertices")),
@@ -286,6 +287,14 @@ void add_unwrap_options(CLI::App& app, UnwrapCommand& command) {
         "1.",
         [&command](const std::string& subject, const std::string& text) {
             command.options.alignment = parse_integer(subject, text, 1, 64);
+        })
+        .group(map);
+    add_value(
+        app, "--udim", "N",
+        "Use N maps of this size, 1 to 100: tiles 1001, 1002, ... of UDIM. No chart is in two "
+        "tiles, and all have one density. Default: 1.",
+        [&command](const std::string& subject, const std::string& text) {
+            command.options.tiles = parse_integer(subject, text, 1, 100);
         })
         .group(map);
     add_number(app, "--texels-per-unit", "D", command.options.texels_per_unit,

@@ -18,6 +18,7 @@
 #include "atlas/packing.h"
 #include "atlas/stack.h"
 #include "atlas/surface.h"
+#include "atlas/tiles.h"
 #include "geometry/corner_texcoords.h"
 #include "progress_stage.h"
 
@@ -26,8 +27,14 @@ using namespace relief::detail;
 
 namespace {
 
-/// Coordinates are multiples of 1 / lattice_size of the map.
-constexpr double lattice_size = 16777216.0;
+/// Coordinates are multiples of one part in so many of the map. With tiles, whose coordinates are
+/// up to 10, floats have four bits less.
+constexpr double lattice_of_map = 16777216.0;
+constexpr double lattice_of_tile = 1048576.0;
+constexpr int tiles_per_row = 10;
+double lattice_size_of(const UnwrapOptions& options) {
+    return options.tiles == 1 ? lattice_of_map : lattice_of_tile;
+}
 /// The share of the map that charts are expected to cover, before they are packed.
 constexpr double expected_use = 0.65;
 /// The length of a chart, in sides of the map, above which it is divided instead of shrinking all
@@ -42,6 +49,8 @@ void check(const UnwrapOptions& options, const Mesh& mesh) {
         if (side < 16 || side > 65536) refuse("the size of the map", side, "16 to 65536 texels");
     if (options.padding < 0 || options.padding > 256)
         refuse("the padding", options.padding, "0 to 256 texels");
+    if (options.tiles < 1 || options.tiles > 100)
+        refuse("the number of tiles", options.tiles, "1 to 100");
     if (!(options.max_stretch > 1.0)) refuse("the stretch limit", options.max_stretch, "above 1");
     if (options.alignment < 1 || options.alignment > 64)
         refuse("the alignment", options.alignment, "1 to 64 texels");
@@ -64,20 +73,6 @@ void check(const UnwrapOptions& options, const Mesh& mesh) {
         throw InvalidInput("the first vertices of the parts must ascend from 0");
 }
 
-/// A chart on the lattice of the map; y points up. Its points may be in one place.
-std::vector<LatticePoint> lattice_points(const FlatChart& chart, const Placement& placement,
-                                         double texels_per_unit, const glm::ivec2& size) {
-    const glm::dvec2 steps = lattice_size / glm::dvec2(size);
-    std::vector<LatticePoint> points;
-    points.reserve(chart.coordinates.size());
-    for (const glm::dvec2& each : chart.coordinates) {
-        const glm::dvec2 p = placed(each, placement, texels_per_unit) * steps + 0.5;
-        points.emplace_back(static_cast<int>(std::clamp(p.x, 0.0, lattice_size)),
-                            static_cast<int>(std::clamp(p.y, 0.0, lattice_size)));
-    }
-    return points;
-}
-
 /// A single triangle may be so small or thin that its corners round to a line.
 void widen_single_triangle(const FlatChart& chart, std::vector<LatticePoint>& points) {
     if (chart.mesh.faces.size() != 1 || orientation(points[0], points[1], points[2]) > 0) return;
@@ -87,11 +82,33 @@ void widen_single_triangle(const FlatChart& chart, std::vector<LatticePoint>& po
     points[v.z] = first + LatticePoint(0, 1);
 }
 
+/// The map, or the tiles, into which charts are packed.
+struct Layout {
+    PackingOptions packing;
+    int tiles = 1;
+    double lattice_size = lattice_of_map;
+};
+
+/// A chart on the lattice of the map; y points up. Its points may be in one place.
+std::vector<LatticePoint> lattice_points(const FlatChart& chart, const Placement& placement,
+                                         double texels_per_unit, const Layout& layout) {
+    const glm::dvec2 steps = layout.lattice_size / glm::dvec2(layout.packing.size);
+    std::vector<LatticePoint> points;
+    points.reserve(chart.coordinates.size());
+    for (const glm::dvec2& each : chart.coordinates) {
+        const glm::dvec2 p = placed(each, placement, texels_per_unit) * steps + 0.5;
+        points.emplace_back(static_cast<int>(std::clamp(p.x, 0.0, layout.lattice_size)),
+                            static_cast<int>(std::clamp(p.y, 0.0, layout.lattice_size)));
+    }
+    return points;
+}
+
 /// Charts in their places on the lattice.
 struct Atlas {
     std::vector<FlatChart> charts;
-    std::vector<std::vector<LatticePoint>> points;
-    double texels_per_unit = 0.0;  ///< Of the surface.
+    std::vector<int> tile;                          ///< Of each chart.
+    std::vector<std::vector<LatticePoint>> points;  ///< In the tile.
+    double texels_per_unit = 0.0;                   ///< Of the surface.
 };
 
 /// Scales charts by the mean density of their triangles.
@@ -125,16 +142,17 @@ class DensityScale {
 /// until there is none.
 Atlas packed_atlas(const AtlasSurface& surface, std::vector<FlatChart> charts,
                    ChartMembers& members, const FlatnessLimits& limits, const DensityScale& density,
-                   const PackingOptions& options) {
+                   const Layout& layout) {
     Atlas atlas;
     for (;;) {
-        const Packing packing = packed(charts, options);
+        TiledPacking tiled = packed_into_tiles(charts, layout.packing, layout.tiles);
+        const Packing& packing = tiled.packing;
         atlas.points.clear();
         std::vector<FlatChart> next;
         bool is_sound = true;
         for (std::size_t i = 0; i < charts.size(); ++i) {
-            atlas.points.push_back(lattice_points(charts[i], packing.placements[i],
-                                                  packing.texels_per_unit, options.size));
+            atlas.points.push_back(
+                lattice_points(charts[i], packing.placements[i], packing.texels_per_unit, layout));
             widen_single_triangle(charts[i], atlas.points[i]);
             const auto problem = overlap_in(charts[i].mesh, atlas.points[i]);
             if (!problem) {
@@ -149,6 +167,7 @@ Atlas packed_atlas(const AtlasSurface& surface, std::vector<FlatChart> charts,
         }
         if (is_sound) {
             atlas.charts = std::move(charts);
+            atlas.tile = std::move(tiled.tile);
             atlas.texels_per_unit = packing.texels_per_unit;
             return atlas;
         }
@@ -157,12 +176,13 @@ Atlas packed_atlas(const AtlasSurface& surface, std::vector<FlatChart> charts,
 }
 
 /// Packs existing charts, and reports those that overlap themselves.
-Atlas repacked_atlas(std::vector<FlatChart> charts, const PackingOptions& options, Report& report) {
+Atlas repacked_atlas(std::vector<FlatChart> charts, const Layout& layout, Report& report) {
     Atlas atlas;
-    const Packing packing = packed(charts, options);
+    TiledPacking tiled = packed_into_tiles(charts, layout.packing, layout.tiles);
+    const Packing& packing = tiled.packing;
     for (std::size_t i = 0; i < charts.size(); ++i) {
         std::vector<LatticePoint> points =
-            lattice_points(charts[i], packing.placements[i], packing.texels_per_unit, options.size);
+            lattice_points(charts[i], packing.placements[i], packing.texels_per_unit, layout);
         atlas.points.push_back(points);
         // Mirrored charts have their own finding.
         const auto reflect = [](LatticePoint p) { return LatticePoint(-p.x, p.y); };
@@ -173,18 +193,23 @@ Atlas repacked_atlas(std::vector<FlatChart> charts, const PackingOptions& option
                        "keeps its shape");
     }
     atlas.charts = std::move(charts);
+    atlas.tile = std::move(tiled.tile);
     atlas.texels_per_unit = packing.texels_per_unit;
     return atlas;
 }
 
-/// Texture coordinates from lattice coordinates: v points down. The result is exact.
-glm::vec2 texcoord_of(const LatticePoint& point) {
-    return {static_cast<float>(point.x / lattice_size),
-            static_cast<float>((lattice_size - point.y) / lattice_size)};
+/// Texture coordinates from lattice coordinates: v points down, and tiles are numbered to the right
+/// and up. The result is exact.
+glm::vec2 texcoord_of(const LatticePoint& point, int tile, double lattice_size) {
+    const int column = tile % tiles_per_row;
+    const int row = tile / tiles_per_row;
+    return {static_cast<float>(point.x / lattice_size + column),
+            static_cast<float>((lattice_size - point.y) / lattice_size - row)};
 }
 
 /// Fills the coordinates and charts of triangles. \return the charts of faces
-FaceCharts fill_corners(const AtlasSurface& surface, const Atlas& atlas, Unwrapped& result) {
+FaceCharts fill_corners(const AtlasSurface& surface, const Atlas& atlas, double lattice_size,
+                        Unwrapped& result) {
     struct Place {
         std::uint32_t chart = 0, index = 0;
     };
@@ -206,7 +231,8 @@ FaceCharts fill_corners(const AtlasSurface& surface, const Atlas& atlas, Unwrapp
         for (std::uint32_t i = 0; i < 3; ++i) {
             const std::uint32_t corner = (i + surface.first_corner[t]) % 3;
             result.corner_texcoords[3 * t + corner] =
-                texcoord_of(atlas.points[place.chart][v[static_cast<glm::length_t>(i)]]);
+                texcoord_of(atlas.points[place.chart][v[static_cast<glm::length_t>(i)]],
+                            atlas.tile[place.chart], lattice_size);
         }
     }
     return charts;
@@ -229,15 +255,17 @@ Unwrapped unwrap(const Mesh& mesh, const UnwrapOptions& options, Report& report)
                        options.split_hard, options.first_vertices, options.densities},
                       report);
     if (surface.faces.empty()) return result;
-    PackingOptions packing{options.size, options.padding, options.alignment, std::nullopt};
+    Layout layout{{options.size, options.padding, options.alignment, std::nullopt},
+                  options.tiles,
+                  lattice_size_of(options)};
     if (options.repack) {
         if (options.texels_per_unit)
-            packing.texels_per_unit = *options.texels_per_unit * surface.unit;
-        const Atlas atlas =
-            repacked_atlas(existing_charts(surface, mesh, options.size, options.unmirror, report),
-                           packing, report);
-        const FaceCharts face_charts = fill_corners(surface, atlas, result);
+            layout.packing.texels_per_unit = *options.texels_per_unit * surface.unit;
+        const Atlas atlas = repacked_atlas(
+            existing_charts(surface, mesh, options.size, options.unmirror, report), layout, report);
+        const FaceCharts face_charts = fill_corners(surface, atlas, layout.lattice_size, result);
         result.stats = stats_of(surface, result.corner_texcoords, face_charts, options.size);
+        result.stats.used /= options.tiles;
         return result;
     }
     Segmentation segmentation = divided(surface, ChartLimits{});
@@ -249,23 +277,25 @@ Unwrapped unwrap(const Mesh& mesh, const UnwrapOptions& options, Report& report)
     double longest = 0.0;
     for (Corner edge = 0; edge < surface.opposite.size(); ++edge)
         longest = std::max(longest, surface.edge_length(edge));
-    const double texels_per_unit = options.texels_per_unit
-                                       ? *options.texels_per_unit * surface.unit
-                                       : std::min(std::sqrt(expected_use * size.x * size.y / area),
-                                                  std::max(size.x, size.y) / longest);
+    const double texels_per_unit =
+        options.texels_per_unit
+            ? *options.texels_per_unit * surface.unit
+            : std::min(std::sqrt(expected_use * options.tiles * size.x * size.y / area),
+                       std::max(size.x, size.y) / longest);
     FlatnessLimits limits;
     limits.max_stretch = options.max_stretch;
-    limits.lattice_scale = texels_per_unit * lattice_size / std::max(size.x, size.y);
+    limits.lattice_scale = texels_per_unit * layout.lattice_size / std::max(size.x, size.y);
     limits.max_side = max_overlength * std::max(size.x, size.y) / texels_per_unit;
     ChartMembers members(segmentation.chart);
     std::vector<FlatChart> charts = flat_charts(surface, segmentation, members, limits);
-    if (options.texels_per_unit) packing.texels_per_unit = texels_per_unit;
+    if (options.texels_per_unit) layout.packing.texels_per_unit = texels_per_unit;
     const DensityScale density(surface, options.densities);
     for (FlatChart& chart : charts)
         density.apply(chart);
-    const Atlas atlas = packed_atlas(surface, std::move(charts), members, limits, density, packing);
-    const FaceCharts face_charts = fill_corners(surface, atlas, result);
+    const Atlas atlas = packed_atlas(surface, std::move(charts), members, limits, density, layout);
+    const FaceCharts face_charts = fill_corners(surface, atlas, layout.lattice_size, result);
     result.stats = stats_of(surface, result.corner_texcoords, face_charts, options.size);
+    result.stats.used /= options.tiles;
     return result;
 }
 

@@ -292,6 +292,42 @@ TEST(Unwrap, RepacksItsOwnCharts) {
     EXPECT_GE(distances_of(second, {512, 256}).between, 12.0 - 1e-3);
 }
 
+TEST(Unwrap, FillsTiles) {
+    Mesh sphere = make_sphere(24, 12);
+    sphere.texcoords = {};
+    UnwrapOptions options;
+    options.size = {128, 128};
+    const AtlasStats single = unwrap(sphere, options).stats;
+    options.tiles = 12;
+    const Unwrapped unwrapped = unwrap(sphere, options);
+    EXPECT_GE(unwrapped.stats.charts, 12U);
+    EXPECT_GT(unwrapped.stats.texels_per_unit, 2.0 * single.texels_per_unit);
+    EXPECT_NEAR(unwrapped.stats.max_density, unwrapped.stats.min_density, 0.1);
+    std::map<std::uint32_t, std::set<std::pair<int, int>>> tiles_of_charts;
+    std::set<std::pair<int, int>> all;
+    // The same in one map, in which nothing may overlap either, with the tiles apart.
+    Unwrapped apart = unwrapped;
+    for (std::size_t t = 0; t < sphere.triangles.size(); ++t) {
+        if (!unwrapped.chart[t]) continue;
+        for (std::size_t i = 0; i < 3; ++i) {
+            glm::vec2& uv = apart.corner_texcoords[3 * t + i];
+            EXPECT_EQ(std::floor(uv.x * 0x1p20), uv.x * 0x1p20) << "a coordinate off the lattice";
+            EXPECT_EQ(std::floor(uv.y * 0x1p20), uv.y * 0x1p20);
+            const std::pair tile(static_cast<int>(std::floor(uv.x)),
+                                 static_cast<int>(std::floor(uv.y)));
+            tiles_of_charts[*unwrapped.chart[t]].insert(tile);
+            all.insert(tile);
+            uv = (uv + glm::vec2(0.0F, 1.0F)) / 16.0F;
+        }
+    }
+    for (const auto& [chart, tiles] : tiles_of_charts)
+        EXPECT_EQ(tiles.size(), 1U) << chart;
+    EXPECT_EQ(all.size(), 12U);
+    EXPECT_EQ(*all.begin(), std::pair(0, -1)) << "the second row of tiles is above the first";
+    EXPECT_TRUE(all.contains({9, 0}));
+    EXPECT_EQ(broken_promise(apart), "");
+}
+
 /// Appends a copy of a mesh, transformed.
 void append_copy(Mesh& mesh, const Mesh& part, const glm::mat3& rotation, const glm::vec3& shift) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());

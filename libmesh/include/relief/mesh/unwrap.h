@@ -45,6 +45,10 @@ struct UnwrapOptions {
     bool stack = false;
     /// Charts share no square block of this many texels, 1 to 64: 4 for BC compression.
     int alignment = 1;
+    /// The number of maps of this size, 1 to 100: tiles of UDIM. Tile i is the unit square at u =
+    /// i % 10 and, with v upwards, v = i / 10. No chart is in two tiles. All tiles have one
+    /// density.
+    int tiles = 1;
     /// Texels per unit of the mesh, above 0; absent: as many as fit into the map.
     std::optional<double> texels_per_unit = std::nullopt;
     /// The relative density of texels of each triangle, above 0; empty: equal. A chart has the mean
@@ -63,7 +67,7 @@ struct AtlasStats {
     /// Parts that share the texels of an equal one, with `stack`: no other value counts them.
     std::size_t stacked_parts = 0;
     std::size_t small_charts = 0;  ///< Charts below 64 texels.
-    double used = 0.0;             ///< The share of the map that charts cover.
+    double used = 0.0;             ///< The share of all tiles that charts cover.
     double texels_per_unit = 0.0;  ///< The mean: the root of the ratio of both areas.
     double min_density = 0.0;      ///< Relative to the mean; 5 % of the area are below.
     double max_density = 0.0;      ///< Relative to the mean; 5 % of the area are above.
@@ -78,8 +82,8 @@ struct AtlasStats {
 };
 
 struct Unwrapped {
-    /// Three for each triangle, in corner order: multiples of 2^-24 within [0,1]. Triangles without
-    /// area and non-finite ones have (0, 0).
+    /// Three for each triangle, in corner order: multiples of 2^-24 within [0,1], or with several
+    /// tiles of 2^-20 within these. Triangles without area and non-finite ones have (0, 0).
     std::vector<glm::vec2> corner_texcoords;
     /// For each triangle; none for those that have no area or are not finite.
     std::vector<std::optional<std::uint32_t>> chart;
@@ -94,7 +98,7 @@ struct Unwrapped {
 ///         than two triangles; with `repack` also mirrored charts and those with overlaps
 /// \return no two triangles overlap (except those of equal parts with `stack`), none is mirrored,
 /// and the charts keep the padding. That is
-///         tested with integers: coordinates are multiples of 2^-24, which floats hold exactly.
+///         tested with integers, because floats hold the coordinates exactly.
 ///         Repeated triangles have the coordinates of the first one
 /// \throws InvalidInput if the mesh is not valid, an option is out of range, the charts do not fit
 ///         into the map with the requested padding or density, or there is nothing to repack
