@@ -146,33 +146,36 @@ ErrorStats errors_of(const std::vector<glm::vec3>& normals, bool are_by_corner, 
     return error_stats(std::move(degrees));
 }
 
-std::vector<glm::vec3> with_creases(const NormalMethod& method, const Mesh& mesh,
+/// Returns one normal per position, or per corner if there are hard edges.
+std::vector<glm::vec3> with_creases(const NormalWeighting& weighting, const Mesh& mesh,
                                     const CreaseRule& creases) {
+    // Double, because relief-mesh has no option for another arithmetic.
+    if (!creases.has_any()) return normals_by(weighting.weight, Arithmetic::float64, mesh);
     Report report;
     NormalOptions how;
-    how.arithmetic = method.arithmetic;
-    return corner_normals(mesh.positions, mesh.triangles, method.weight, how, creases.edges, report)
+    how.arithmetic = Arithmetic::float64;
+    return corner_normals(mesh.positions, mesh.triangles, weighting.weight, how, creases.edges,
+                          report)
         .normals;
 }
 
 std::vector<Method> methods_on(const Mesh& mesh, const CreaseRule& creases,
                                const CornerGroundTruth& ground_truth, const AssetOptions& options) {
     std::vector<Method> methods;
-    // Only double: relief-mesh has no option for another arithmetic.
-    for (const NormalMethod& method : normal_methods(std::array{Arithmetic::float64})) {
-        const auto normals = [method, &mesh, &creases] {
-            return creases.has_any() ? with_creases(method, mesh, creases) : method.normals(mesh);
+    for (const NormalWeighting& weighting : normal_weightings) {
+        const auto normals = [weighting, &mesh, &creases] {
+            return with_creases(weighting, mesh, creases);
         };
         methods.push_back(
-            {.name = method.weighting,
-             .choices = {{"weighting", method.weighting}},
+            {.name = weighting.name,
+             .choices = {{"weighting", weighting.name}},
              .error =
                  [=, &mesh, &creases, &ground_truth] {
                      return errors_of(normals(), creases.has_any(), mesh, ground_truth);
                  },
              .work = [normals] { normals(); },
              .command = fmt::format("relief-mesh process {} -o OUT.glb --normals {}{}",
-                                    options.arguments, method.weighting, creases.option)});
+                                    options.arguments, weighting.name, creases.option)});
     }
     return methods;
 }
@@ -452,18 +455,11 @@ AssetExperiment stored_frames(const Mesh& mesh, const CornerTangents& tangents,
     experiment.input = fmt::format("{} frames", frames->normals.size());
     experiment.item = "frame";
     experiment.items = static_cast<double>(frames->normals.size());
-    std::vector<Method> methods;
-    for (const FrameCode& code : all_frame_codes()) {
-        Method method = code.method(frames);
-        method.work = [frames, code] {
-            Report report;
-            encode_frames(frames->float_normals, frames->float_tangents, code.encoding,
-                          code.rounding, report);
-        };
+    std::vector<Method> methods = frame_methods(frames, FrameWork::encode);
+    for (Method& method : methods) {
         method.command = fmt::format(
             "encode_frames(normals, tangents, FrameEncoding::{}, FrameRounding::{}, report)",
-            enum_name(code.encoding), code.rounding_name());
-        methods.push_back(std::move(method));
+            method.choices[0].second, method.choices[1].second);
     }
     finish(asset, std::move(methods), {CostKind::bytes, invisible_degrees}, options);
     return asset;

@@ -349,18 +349,6 @@ Curve curve_of(const std::string& name, BakedWays& baked, std::size_t first, std
     return curve;
 }
 
-/// The speed of ray casting, from a float map, whose encoding time is negligible; empty if not
-/// timed.
-std::string speed_of(std::size_t rays, const Cost& cost) {
-    if (!cost.one_thread) return {};
-    const auto millions = [&](const Timing& timing) {
-        return 1e-6 * static_cast<double>(rays) / timing.spread().median;
-    };
-    return fmt::format(
-        " It casts {:.2g} million rays per second on one thread, {:.2g} on all threads.",
-        millions(*cost.one_thread), millions(*cost.all_threads));
-}
-
 void finish_samples(BakedWays& baked, Experiment& report) {
     constexpr std::size_t in_8 = 0;
     constexpr std::size_t in_16 = 1;
@@ -382,19 +370,6 @@ void finish_samples(BakedWays& baked, Experiment& report) {
                              BakedMap{ways[2], {.bits = 16}}};
     add_error_maps(baked.bake(), maps, 2.0, report);
     add_renderings(baked.bake(), std::span(maps).first(2), report);
-    const auto rms = [&](std::size_t way, std::size_t format) {
-        return baked.result(way).errors[format].rms;
-    };
-    const std::size_t last = ways.size() - 1;
-    const Cost& last_cost = measurement_at(report, baked.method(last, in_floats)).cost;
-    report.finding = fmt::format(
-        "Without rounding, {} per texel has an error of {:.3f} degrees (RMS), {} {:.3f} and {} "
-        "{:.4f}. Rounding alone has an error of {:.3f} degrees in 8 bits and {:.4f} in 16 bits; "
-        "with {} the error is {:.3f} in 8 bits and {:.4f} in 16 bits.{}",
-        name_of(ways[0]), rms(0, in_floats), name_of(ways[1]), rms(1, in_floats),
-        name_of(ways[last]), rms(last, in_floats), baked.result(0).quantization[in_8].rms,
-        baked.result(0).quantization[in_16].rms, name_of(ways[last]), rms(last, in_8),
-        rms(last, in_16), speed_of(baked.result(last).rays, last_cost));
 }
 
 PreparedExperiment by_samples(const std::shared_ptr<const BumpyBake>& bake, bool is_quick) {
@@ -405,6 +380,8 @@ PreparedExperiment by_samples(const std::shared_ptr<const BumpyBake>& bake, bool
         std::vector<NormalMapFormat>{{.bits = 8}, {.bits = 16}, {.bits = 32}});
     PreparedExperiment prepared = on_ways(baked);
     prepared.report.question = "How many rays does a texel need, and how many bits?";
+    for (const Method& method : prepared.methods)
+        prepared.compared.push_back(method.name);
     prepared.finish = [baked](Experiment& report) { finish_samples(*baked, report); };
     return prepared;
 }
@@ -412,7 +389,7 @@ PreparedExperiment by_samples(const std::shared_ptr<const BumpyBake>& bake, bool
 constexpr std::array thresholds_in_degrees = {16.0, 8.0, 4.0, 2.0, 1.0, 0.5};
 
 /// The ways are one per threshold, a quarter of the rays everywhere, and all rays everywhere.
-void finish_thresholds(BakedWays& baked, int max_rays, Experiment& report) {
+void finish_thresholds(BakedWays& baked, Experiment& report) {
     const std::vector<BakeSampling>& ways = baked.ways();
     const std::size_t adaptive = thresholds_in_degrees.size();
     const auto error_of = [&](std::size_t way) -> const ErrorStats& {
@@ -438,12 +415,6 @@ void finish_thresholds(BakedWays& baked, int max_rays, Experiment& report) {
                              BakedMap{ways[shown], {.bits = 32}},
                              BakedMap{ways.back(), {.bits = 32}}};
     add_error_maps(baked.bake(), maps, 0.5, report);
-    report.finding = fmt::format(
-        "If only texels whose first rays differ by more than {:g} degrees get all {} rays, the "
-        "mean is {:.1f} rays per texel and the error is {:.4f} degrees (RMS), compared with {:.4f} "
-        "with {} rays everywhere and {:.4f} with all rays everywhere.",
-        thresholds_in_degrees.at(shown), max_rays, baked.rays_per_texel(shown), error_of(shown).rms,
-        error_of(adaptive).rms, max_rays / 4, error_of(adaptive + 1).rms);
 }
 
 PreparedExperiment by_threshold(const std::shared_ptr<const BumpyBake>& bake, bool is_quick) {
@@ -457,9 +428,9 @@ PreparedExperiment by_threshold(const std::shared_ptr<const BumpyBake>& bake, bo
                                                    std::vector<NormalMapFormat>{{.bits = 32}});
     PreparedExperiment prepared = on_ways(baked);
     prepared.report.question = "Does it pay to cast more rays only where the first rays differ?";
-    prepared.finish = [baked, max_rays](Experiment& report) {
-        finish_thresholds(*baked, max_rays, report);
-    };
+    prepared.compared = {prepared.methods[2].name, prepared.methods[6].name,
+                         prepared.methods[7].name};
+    prepared.finish = [baked](Experiment& report) { finish_thresholds(*baked, report); };
     return prepared;
 }
 

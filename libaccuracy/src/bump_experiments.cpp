@@ -195,21 +195,6 @@ Experiment square_map(int side) {
     return {.error_unit = "degrees", .item = "texel", .items = static_cast<double>(side) * side};
 }
 
-/// "gaussian 4, float64 has the smallest error, 0.32 degrees RMS (sobel3: 0.99). ..."
-/// \param experiment  its first choice is the kernel
-std::string bump_finding(const Experiment& experiment) {
-    const Measurement& best = *most_accurate(experiment);
-    std::string text =
-        fmt::format("{} has the smallest error, {:.2g} degrees RMS", best.method, best.error.rms);
-    const auto& all = experiment.measurements;
-    const auto is_usual = [](const Measurement& one) {
-        return one.choices.front().second == enum_name(Kernel::sobel3);
-    };
-    const auto usual = std::find_if(all.begin(), all.end(), is_usual);
-    if (!is_usual(best)) text += fmt::format(" (sobel3: {:.2g})", usual->error.rms);
-    return text + ". " + arithmetic_finding(experiment, "kernels");
-}
-
 /// Every kernel in both arithmetics; then again after the steps are smoothed, or not.
 std::vector<BumpMethod> kernel_methods(int bits, bool has_smoothed) {
     std::vector<BumpMethod> methods;
@@ -255,7 +240,6 @@ PreparedExperiment on_wave(int bits, bool is_quick) {
                  }});
     }
     prepared.finish = [bits, is_quick](Experiment& report) {
-        report.finding = bump_finding(report);
         report.charts = {wavelength_chart(bits, side, is_quick)};
     };
     return prepared;
@@ -310,9 +294,8 @@ PreparedExperiment on_recipe(const FieldRecipe& recipe, int side) {
     }
     prepared.finish = [field](Experiment& report) {
         const KernelChoice choice = choose_kernel(field->heights, field->options);
-        report.finding =
-            fmt::format("{} On this map --kernel auto selects {}.", bump_finding(report),
-                        name_of(choice.kernel, choice.gaussian_radius));
+        report.finding += fmt::format(" On this map --kernel auto selects {}.",
+                                      name_of(choice.kernel, choice.gaussian_radius));
     };
     return prepared;
 }

@@ -166,14 +166,6 @@ Chart triangles_chart(const DecimationInput& input, DecimationError kind, bool i
     return chart;
 }
 
-std::string decimation_finding(const Experiment& report, DecimationError kind) {
-    const Measurement& best = *most_accurate(report);
-    const auto usual = std::find_if(report.measurements.begin(), report.measurements.end(),
-                                    [](const Measurement& one) { return one.method == "default"; });
-    return fmt::format("{} has the smallest error, {:.3g} {} RMS; the default options have {:.3g}.",
-                       best.method, best.error.rms, unit_of(kind), usual->error.rms);
-}
-
 PreparedExperiment decimation_of(AnalyticSurface surface, int cells, DecimationError kind) {
     const auto input = std::make_shared<const DecimationInput>(surface, cells);
     const std::size_t triangles = input->mesh.triangles.size();
@@ -207,9 +199,6 @@ PreparedExperiment decimation_of(AnalyticSurface surface, int cells, DecimationE
                       method = methods[i]] { decimated_by(method, input->mesh, usual_part); }});
     }
     prepared.costs.memory = false;
-    prepared.finish = [kind](Experiment& report) {
-        report.finding = decimation_finding(report, kind);
-    };
     return prepared;
 }
 
@@ -217,7 +206,6 @@ PreparedExperiment decimation_case(AnalyticSurface surface, DecimationError kind
     const int cells = is_quick ? 64 : 256;
     PreparedExperiment prepared = decimation_of(surface, cells, kind);
     prepared.finish = [surface, cells, kind, is_quick](Experiment& report) {
-        report.finding = decimation_finding(report, kind);
         report.charts = {triangles_chart(DecimationInput(surface, cells), kind, is_quick)};
     };
     return prepared;

@@ -100,17 +100,6 @@ Chart loss_chart(const GlDevice& device, int size, const char* id, const char* t
     return chart;
 }
 
-std::string energy_finding(const Experiment& experiment) {
-    using enum EnergyMethod;
-    const Measurement& one = measurement_at(experiment, one_bounce);
-    const Measurement& all = measurement_at(experiment, all_bounces);
-    return fmt::format(
-               "At roughness 1, a white metal loses {:.0f}% of the light (RMS, at most {:.0f}%) if "
-               "only the first bounce counts, and {:.2g}% with all bounces.",
-               one.error.rms, one.error.max, all.error.rms) +
-           frame_times({{"one bounce", one}, {"all bounces", all}});
-}
-
 }  // namespace
 
 PreparedExperiment energy_experiment(const PlanOptions& options) {
@@ -153,7 +142,6 @@ PreparedExperiment energy_experiment(const PlanOptions& options) {
                        [](double roughness) { return white_ball(roughness); }),
             loss_chart(*device, chart_size, "coat", "Lost light by roughness of a clear coat",
                        [](double roughness) { return white_ball(0.0, roughness); })};
-        report.finding = energy_finding(report);
     };
     return prepared;
 }

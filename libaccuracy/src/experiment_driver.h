@@ -52,6 +52,15 @@ struct Method {
     double nominal_cost = 0.0;           ///< RecommendationRule::nominal_costs.
 };
 
+/// A method as a function of its input, for experiments that apply it to several inputs.
+template <typename Input, typename Result>
+struct MethodOn {
+    std::string name{};
+    Choices choices{};
+    std::function<Result(const Input&)> compute{};
+    bool is_textbook = false;  ///< Code without guards, measured for contrast.
+};
+
 /// An experiment whose input exists.
 struct PreparedExperiment {
     /// Describes the experiment. The driver adds the subject, the title and the measurements.
@@ -61,8 +70,10 @@ struct PreparedExperiment {
     /// If true, one thread means all threads on one processor, because threads of an OpenGL driver
     /// ignore the limit of parallel loops.
     bool limits_processors = false;
-    /// Adds charts, pictures, notes and the finding. Called once, after the last pass, if no method
-    /// was left out.
+    /// The methods that the finding compares. Empty: the most and the least accurate one.
+    std::vector<std::string> compared{};
+    /// Adds charts and pictures to the report, and may replace its finding. Called once, after the
+    /// last pass, if no method was left out.
     std::function<void(Experiment& report)> finish{};
 };
 
@@ -142,22 +153,13 @@ std::vector<PlannedExperiment> shading_plan(const PlanOptions& options);
 /// results of a method are wrong.
 std::vector<PlannedExperiment> stability_plan(const PlanOptions& options);
 
-/// The measurement of a method by its place in the experiment's list: an index, or a value of an
-/// enumeration. \throws std::out_of_range if there is none
-template <typename Index>
-const Measurement& measurement_at(const Experiment& experiment, Index index) {
-    return experiment.measurements.at(static_cast<std::size_t>(index));
-}
-
-/// The measurement with the least RMS error among those without undefined results, or nullptr.
-const Measurement* most_accurate(const Experiment& experiment);
-
-/// "float32 changes no RMS error by more than 0.01 degrees and takes 0.70 times as long (median of
-/// the kernels)."
+/// Returns the finding of an experiment: the most accurate of the compared methods, and the errors
+/// and times of the others; and the effect of float32, if methods are in pairs of both arithmetics.
 ///
-/// \param experiment  its measurements are pairs of the same method in float64 and in float32
-/// \param plural  the kind of the methods: "kernels"
-std::string arithmetic_finding(const Experiment& experiment, const char* plural);
+/// "'max, float64' has the smallest error, 0.453 degrees RMS, 2.03 at most; 'area, float64' has the
+/// largest, 1.28."
+/// \param compared  as PreparedExperiment::compared
+std::string finding_of(const Experiment& experiment, const std::vector<std::string>& compared);
 
 /// A curve with the order fitted to its points.
 Curve fitted_curve(std::string method, std::vector<CurvePoint> points,

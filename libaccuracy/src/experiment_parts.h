@@ -55,19 +55,29 @@ inline std::string name_of(Triangulation triangulation) {
 
 // Vertex normals: every weighting on analytic surfaces and on the fans of [Max 1999].
 
-/// One way to compute the vertex normals of a mesh.
-struct NormalMethod {
-    std::string weighting;  ///< The name in relief-mesh: "uniform", ..., "auto".
-    Arithmetic arithmetic = Arithmetic::float64;
-    std::optional<NormalWeight> weight{};  ///< Absent: chosen per vertex.
-    /// Returns one normal per position.
-    std::function<std::vector<glm::vec3>(const Mesh&)> normals;
-
-    [[nodiscard]] std::string name() const;  ///< "max, float64"
-    [[nodiscard]] Choices choices() const;
+/// Weightings by their names in relief-mesh; without a weight, it is chosen per vertex.
+struct NormalWeighting {
+    const char* name;
+    std::optional<NormalWeight> weight;
 };
+inline constexpr std::array normal_weightings = {
+    NormalWeighting{"uniform", NormalWeight::uniform},
+    NormalWeighting{"area", NormalWeight::area},
+    NormalWeighting{"angle", NormalWeight::angle},
+    NormalWeighting{"sine", NormalWeight::sine},
+    NormalWeighting{"max", NormalWeight::max},
+    NormalWeighting{"angle-edges", NormalWeight::angle_edges},
+    NormalWeighting{"area-angle", NormalWeight::area_angle},
+    NormalWeighting{"auto", std::nullopt}};
 
-/// All eight weightings, each in the given arithmetics.
+/// Computes one normal per position.
+std::vector<glm::vec3> normals_by(std::optional<NormalWeight> weight, Arithmetic arithmetic,
+                                  const Mesh& mesh);
+
+/// A method for the vertex normals of a mesh: "max, float64". Its first choice is the weighting.
+using NormalMethod = MethodOn<Mesh, std::vector<glm::vec3>>;
+
+/// All weightings, each in the given arithmetics.
 std::vector<NormalMethod> normal_methods(std::span<const Arithmetic> arithmetics);
 
 /// The angles between normals and those of the surface, at the inner vertices of the mesh.

@@ -13,49 +13,29 @@
 #include "relief/mesh/statistics.h"
 
 namespace relief::accuracy::detail {
-namespace {
 
-NormalMethod weighted(std::string weighting, NormalWeight weight, Arithmetic arithmetic) {
-    return {std::move(weighting), arithmetic, weight, [weight, arithmetic](const Mesh& mesh) {
-                Report report;
-                NormalOptions options;
-                options.weight = weight;
-                options.arithmetic = arithmetic;
-                return vertex_normals(mesh.positions, mesh.triangles, options, report);
-            }};
-}
-
-NormalMethod chosen(Arithmetic arithmetic) {
-    return {"auto", arithmetic, std::nullopt, [arithmetic](const Mesh& mesh) {
-                Report report;
-                NormalOptions options;
-                options.arithmetic = arithmetic;
-                return chosen_normals(mesh.positions, mesh.triangles, options, report).normals;
-            }};
-}
-
-}  // namespace
-
-std::string NormalMethod::name() const {
-    return weighting + ", " + enum_name(arithmetic);
-}
-
-Choices NormalMethod::choices() const {
-    return {{"weighting", weighting}, {"arithmetic", enum_name(arithmetic)}};
+std::vector<glm::vec3> normals_by(std::optional<NormalWeight> weight, Arithmetic arithmetic,
+                                  const Mesh& mesh) {
+    Report report;
+    NormalOptions options;
+    options.arithmetic = arithmetic;
+    if (!weight) return chosen_normals(mesh.positions, mesh.triangles, options, report).normals;
+    options.weight = *weight;
+    return vertex_normals(mesh.positions, mesh.triangles, options, report);
 }
 
 std::vector<NormalMethod> normal_methods(std::span<const Arithmetic> arithmetics) {
-    using enum NormalWeight;
     std::vector<NormalMethod> methods;
-    for (const auto& [word, weight] :
-         {std::pair("uniform", uniform), std::pair("area", area), std::pair("angle", angle),
-          std::pair("sine", sine), std::pair("max", max), std::pair("angle-edges", angle_edges),
-          std::pair("area-angle", area_angle)}) {
-        for (const Arithmetic arithmetic : arithmetics)
-            methods.push_back(weighted(word, weight, arithmetic));
+    for (const NormalWeighting& weighting : normal_weightings) {
+        for (const Arithmetic arithmetic : arithmetics) {
+            const char* const word = enum_name(arithmetic);
+            methods.push_back({fmt::format("{}, {}", weighting.name, word),
+                               {{"weighting", weighting.name}, {"arithmetic", word}},
+                               [weight = weighting.weight, arithmetic](const Mesh& mesh) {
+                                   return normals_by(weight, arithmetic, mesh);
+                               }});
+        }
     }
-    for (const Arithmetic arithmetic : arithmetics)
-        methods.push_back(chosen(arithmetic));
     return methods;
 }
 
@@ -73,7 +53,7 @@ ErrorStats fan_errors(const NormalMethod& method, int valence, std::uint32_t fan
     constexpr glm::dvec3 up(0.0, 0.0, 1.0);
     std::vector<float> degrees;
     for (std::uint32_t seed = 0; seed < fans; ++seed) {
-        const std::vector<glm::vec3> normals = method.normals(cubic_fan(valence, seed));
+        const std::vector<glm::vec3> normals = method.compute(cubic_fan(valence, seed));
         degrees.push_back(static_cast<float>(degrees_between(glm::dvec3(normals.front()), up)));
     }
     return error_stats(std::move(degrees));
@@ -122,9 +102,10 @@ std::vector<Case> cases(bool is_quick) {
 /// these sizes.
 std::optional<double> expected_order(const Case& one, const NormalMethod& method) {
     using enum AnalyticSurface;
+    const std::string& weighting = method.choices.front().second;
     // The automatic choice takes Max's weights, except on folded triangles.
-    const bool is_max = !method.weight || method.weight == NormalWeight::max;
-    const bool is_area = method.weight == NormalWeight::area;
+    const bool is_max = weighting == "auto" || weighting == "max";
+    const bool is_area = weighting == "area";
     switch (one.triangulation) {
         case Triangulation::regular:
             if ((one.surface == sphere || one.surface == torus) && is_max) return std::nullopt;
@@ -135,7 +116,7 @@ std::optional<double> expected_order(const Case& one, const NormalMethod& method
         case Triangulation::anisotropic:
             return is_max ? std::nullopt : std::optional(-1.0);
         default:
-            return is_area || !method.weight ? std::optional(-1.0) : std::nullopt;
+            return is_area || weighting == "auto" ? std::optional(-1.0) : std::nullopt;
     }
 }
 
@@ -155,31 +136,15 @@ Chart cells_chart(const Case& one, bool is_quick) {
         const AnalyticMesh ground_truth =
             analytic_mesh(one.surface, one.triangulation, cells, tables_seed);
         for (std::size_t m = 0; m < methods.size(); ++m) {
-            const auto errors = normal_errors(methods[m].normals(ground_truth.mesh), ground_truth);
+            const auto errors = normal_errors(methods[m].compute(ground_truth.mesh), ground_truth);
             points[m].push_back({static_cast<double>(cells), curve_error(errors)});
         }
     }
     for (std::size_t m = 0; m < methods.size(); ++m) {
         chart.curves.push_back(
-            fitted_curve(methods[m].name(), std::move(points[m]), expected_order(one, methods[m])));
+            fitted_curve(methods[m].name, std::move(points[m]), expected_order(one, methods[m])));
     }
     return chart;
-}
-
-/// "max has the smallest error, 0.453 degrees RMS; area has the largest, 1.28. ..."
-/// \param experiment  its first choice is the weighting
-std::string normals_finding(const Experiment& experiment) {
-    const auto& all = experiment.measurements;
-    const auto weighting_of = [](const Measurement& one) { return one.choices.front().second; };
-    const Measurement& best = *most_accurate(experiment);
-    const auto by_rms = [](const Measurement& a, const Measurement& b) {
-        return a.error.rms < b.error.rms;
-    };
-    const Measurement& worst = *std::max_element(all.begin(), all.end(), by_rms);
-    std::string text =
-        fmt::format("{} has the smallest error, {:.3g} degrees RMS; {} has the largest, {:.3g}.",
-                    weighting_of(best), best.error.rms, weighting_of(worst), worst.error.rms);
-    return text + " " + arithmetic_finding(experiment, "weightings");
 }
 
 /// The weightings in both arithmetics on a mesh. \param input  describes the mesh
@@ -197,17 +162,16 @@ PreparedExperiment on_mesh(AnalyticMesh mesh, const std::string& input) {
         .item = "triangle",
         .items = triangles};
     for (std::size_t i = 0; i < methods.size(); ++i) {
-        const auto& normals = methods[i].normals;
+        const auto& normals = methods[i].compute;
         prepared.methods.push_back(
-            {.name = methods[i].name(),
-             .choices = methods[i].choices(),
+            {.name = methods[i].name,
+             .choices = methods[i].choices,
              .error =
                  [ground_truth, normals] {
                      return normal_errors(normals(ground_truth->mesh), *ground_truth);
                  },
              .work = [ground_truth, normals] { normals(ground_truth->mesh); }});
     }
-    prepared.finish = [](Experiment& report) { report.finding = normals_finding(report); };
     return prepared;
 }
 
@@ -220,8 +184,7 @@ PreparedExperiment on_case(const Case& one, bool is_quick) {
         "Which weighting has the smallest error on this surface ({}), and what does it cost?",
         name_of(one));
     prepared.costs.memory = false;
-    prepared.finish = [finding = prepared.finish, one, is_quick](Experiment& report) {
-        finding(report);
+    prepared.finish = [one, is_quick](Experiment& report) {
         report.charts = {cells_chart(one, is_quick)};
     };
     return prepared;
@@ -248,10 +211,10 @@ Chart neighbors_chart(const Experiment& experiment, const std::vector<NormalMeth
                 .is_x_log = false};
     for (std::size_t i = 0; i < methods.size(); ++i) {
         Curve& curve = chart.curves.emplace_back();
-        curve.method = methods[i].name();
+        curve.method = methods[i].name;
         for (int valence = 3; valence <= 9; ++valence) {
             const ErrorStats errors = valence == usual_valence
-                                          ? measurement_at(experiment, i).error
+                                          ? experiment.measurements.at(i).error
                                           : fan_errors(methods[i], valence, fans);
             curve.points.push_back({static_cast<double>(valence), curve_error(errors)});
         }
@@ -276,18 +239,14 @@ PreparedExperiment on_fans(bool is_quick) {
         .item = "fan",
         .items = static_cast<double>(fans)};
     for (std::size_t i = 0; i < methods.size(); ++i) {
-        prepared.methods.push_back({.name = methods[i].name(),
-                                    .choices = methods[i].choices(),
+        prepared.methods.push_back({.name = methods[i].name,
+                                    .choices = methods[i].choices,
                                     .error = [method = methods[i], fans] {
                                         return fan_errors(method, usual_valence, fans);
                                     }});
     }
     prepared.finish = [methods, fans](Experiment& report) {
         report.charts = {neighbors_chart(report, methods, fans)};
-        const Measurement& best = *most_accurate(report);
-        report.finding =
-            fmt::format("With {} neighbors {} has the smallest error, {:.3g} degrees RMS.",
-                        usual_valence, best.choices.front().second, best.error.rms);
     };
     return prepared;
 }

@@ -146,40 +146,20 @@ double bytes_of(int side) {
 /// Side of the smallest cube map; each method doubles it.
 constexpr int smallest_map_side = 16;
 
-/// The index of the method with a cube map of this side.
-std::size_t method_with(int side) {
-    std::size_t index = 0;
-    for (int smaller = smallest_map_side; smaller < side; smaller *= 2)
-        ++index;
-    return index;
-}
-
 void finish_cube_map_sizes(Experiment& experiment, const Renderings& renderings) {
     const std::vector<RenderedMethod>& methods = renderings.methods;
-    const auto& measured = experiment.measurements;
     Curve curve{.method = "cube map"};
     for (std::size_t i = 0; i < methods.size(); ++i)
-        curve.points.push_back({smallest_map_side * std::exp2(i), measured[i].error.rms});
+        curve.points.push_back(
+            {smallest_map_side * std::exp2(i), experiment.measurements[i].error.rms});
     curve.order = fitted_order(curve.points);
     experiment.charts = {{.id = "size",
                           .title = "Error by size",
                           .x_label = "texels along a face",
                           .y_label = "FLIP",
                           .curves = {std::move(curve)}}};
-    const std::size_t small = method_with(32);
-    const std::size_t middle = method_with(128);
-    for (const std::size_t i : {small, middle})
+    for (const std::size_t i : {1U, 3U})  // 32 and 128 texels.
         add_images("The environment in a mirror", renderings, i, 0.5, experiment);
-    experiment.finding = fmt::format(
-        "The mirror has a FLIP error of {:.3f} (RMS) with {} per face, {:.3f} with {} and {:.3f} "
-        "with {}, which need {:.2g}, {:.2g} and {:.2g} MB.",
-        measured[small].error.rms, methods[small].name, measured[middle].error.rms,
-        methods[middle].name, measured.back().error.rms, methods.back().name,
-        methods[small].stored_bytes * 1e-6, methods[middle].stored_bytes * 1e-6,
-        methods.back().stored_bytes * 1e-6);
-    experiment.finding += frame_times({{methods[small].name, measured[small]},
-                                       {methods[middle].name, measured[middle]},
-                                       {methods.back().name, measured.back()}});
 }
 
 }  // namespace
@@ -211,7 +191,8 @@ PreparedExperiment reflection_experiment(const PlanOptions& options) {
                            bytes_of(side)});
     }
     return prepare_rendering(device, std::move(experiment), std::move(methods),
-                             exact_mirror(waves_and_lights, size, rays), finish_cube_map_sizes);
+                             exact_mirror(waves_and_lights, size, rays), finish_cube_map_sizes,
+                             {name_of(32), name_of(128), name_of(largest)});
 }
 
 namespace {
@@ -222,9 +203,6 @@ constexpr int small_map_side = 128;
 /// Image sizes in pixels.
 constexpr int full_ball_size = 192;
 constexpr int quick_ball_size = 64;
-
-/// The methods of Balls.
-enum class GlossyMethod { not_blurred, levels_5, levels_6 };
 
 /// The environments, and the methods for one roughness.
 struct Balls {
@@ -262,21 +240,6 @@ Chart roughness_chart(const GlDevice& device, const Balls& balls, bool is_quick)
     return chart;
 }
 
-std::string glossy_finding(const Experiment& experiment, double roughness) {
-    const auto of = [&](GlossyMethod method) -> const Measurement& {
-        return measurement_at(experiment, method);
-    };
-    const Measurement& levels_6 = of(GlossyMethod::levels_6);
-    const Measurement& levels_5 = of(GlossyMethod::levels_5);
-    const Measurement& not_blurred = of(GlossyMethod::not_blurred);
-    return fmt::format(
-               "At roughness {}, 6 levels have a FLIP error of {:.4f} (RMS), 5 levels {:.4f}, and "
-               "a mirror without blur {:.3f}.",
-               roughness, levels_6.error.rms, levels_5.error.rms, not_blurred.error.rms) +
-           frame_times(
-               {{"6 levels", levels_6}, {"5 levels", levels_5}, {"not blurred", not_blurred}});
-}
-
 }  // namespace
 
 PreparedExperiment glossy_experiment(const PlanOptions& options) {
@@ -298,16 +261,13 @@ PreparedExperiment glossy_experiment(const PlanOptions& options) {
         [device = device.get(), balls, is_quick = options.is_quick](Experiment& report,
                                                                     const Renderings& renderings) {
             report.charts = {roughness_chart(*device, *balls, is_quick)};
-            for (const GlossyMethod method : {GlossyMethod::not_blurred, GlossyMethod::levels_6}) {
-                const auto i = static_cast<std::size_t>(method);
+            const std::size_t levels_6 = renderings.methods.size() - 1;
+            for (const std::size_t i : {std::size_t{0}, levels_6})
                 report.pictures.push_back(image_pair("A rough mirror", renderings.methods[i].name,
                                                      renderings.images[i].picture,
                                                      renderings.ground_truth));
-            }
-            const auto levels_6 = static_cast<std::size_t>(GlossyMethod::levels_6);
             report.heat_maps.push_back({"FLIP error", renderings.methods[levels_6].name,
                                         renderings.images[levels_6].errors, 0.2});
-            report.finding = glossy_finding(report, shown);
         });
 }
 

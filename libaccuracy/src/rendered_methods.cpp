@@ -109,7 +109,8 @@ struct Rendering {
 PreparedExperiment prepare_rendering(
     std::shared_ptr<const GlDevice> device, Experiment report, std::vector<RenderedMethod> methods,
     Image ground_truth,
-    std::function<void(Experiment& report, const Renderings& renderings)> finish) {
+    std::function<void(Experiment& report, const Renderings& renderings)> finish,
+    std::vector<std::string> compared) {
     const auto state = std::make_shared<Rendering>();
     const std::size_t count = methods.size();
     state->device = std::move(device);
@@ -118,6 +119,7 @@ PreparedExperiment prepare_rendering(
     state->renderers.resize(count);
     PreparedExperiment prepared;
     prepared.report = std::move(report);
+    prepared.compared = std::move(compared);
     for (std::size_t i = 0; i < count; ++i) {
         const RenderedMethod& method = state->renderings.methods[i];
         prepared.methods.push_back({.name = method.name,
@@ -159,16 +161,6 @@ void add_images(const std::string& title, const Renderings& renderings, std::siz
     const RenderedImage& image = renderings.images[method];
     experiment.pictures.push_back(image_pair(title, name, image.picture, renderings.ground_truth));
     experiment.heat_maps.push_back({"FLIP error", name, image.errors, brightest});
-}
-
-std::string frame_times(std::initializer_list<NamedMeasurement> methods) {
-    std::vector<std::string> times;
-    for (const auto& [name, measurement] : methods) {
-        const double seconds = median_seconds(measurement);
-        if (std::isnan(seconds)) return "";
-        times.push_back(fmt::format("{:.2g} ms ({})", 1e3 * seconds, name));
-    }
-    return fmt::format(" Median frame times: {}.", fmt::join(times, ", "));
 }
 
 Experiment image_experiment(int size) {

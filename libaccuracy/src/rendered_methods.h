@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <initializer_list>
 #include <memory>
 #include <span>
 #include <string>
@@ -67,6 +66,7 @@ struct Renderings {
 /// \param report  describes the experiment
 /// \param ground_truth  three float channels, linear light; it determines the size of the images
 /// \param finish  as PreparedExperiment::finish; all images exist
+/// \param compared  as PreparedExperiment::compared
 ///
 /// Times are whole frames, from the first command to the last pixel, without reading back and
 /// without the averaging of `pixels_per_side`. The time on all threads uses the threads of the
@@ -75,7 +75,8 @@ struct Renderings {
 PreparedExperiment prepare_rendering(
     std::shared_ptr<const GlDevice> device, Experiment report, std::vector<RenderedMethod> methods,
     Image ground_truth,
-    std::function<void(Experiment& report, const Renderings& renderings)> finish);
+    std::function<void(Experiment& report, const Renderings& renderings)> finish,
+    std::vector<std::string> compared = {});
 
 /// Returns the mean seconds of a few frames of a renderer, without reading back.
 double seconds_of_frames(shade::Renderer& renderer, const shade::Camera& camera);
@@ -101,16 +102,6 @@ PicturePair image_pair(const std::string& title, const std::string& method, cons
 /// \param brightest  the FLIP error that is shown at full brightness
 void add_images(const std::string& title, const Renderings& renderings, std::size_t method,
                 double brightest, Experiment& experiment);
-
-/// A measurement with the name that a sentence gives to it.
-struct NamedMeasurement {
-    std::string name;
-    const Measurement& measurement;
-};
-
-/// " Median frame times: 1.2 ms (stored), 3.4 ms (derived)."; empty if one was not timed. Uses the
-/// time on one thread if it was measured, like mark_pareto_optimal().
-std::string frame_times(std::initializer_list<NamedMeasurement> methods);
 
 /// An experiment on square images of `size` pixels along each side, with errors in FLIP.
 Experiment image_experiment(int size);

@@ -53,22 +53,6 @@ std::vector<RenderedMethod> interpolation_methods() {
     return methods;
 }
 
-std::string interpolation_finding(const Experiment& experiment) {
-    constexpr std::size_t coarse = 1;
-    constexpr std::size_t fine = 3;
-    const auto at = [&](std::size_t choice, std::size_t slices) -> const Measurement& {
-        return experiment.measurements.at(choice * lighting_slices.size() + slices);
-    };
-    return fmt::format(
-               "With {} triangles, flat shading has a FLIP error of {:.3f} (RMS), Gouraud shading "
-               "{:.3f} and Phong shading {:.3f}; Gouraud shading needs {} triangles for {:.3f}.",
-               torus_triangles(lighting_slices[coarse]), at(0, coarse).error.rms,
-               at(1, coarse).error.rms, at(2, coarse).error.rms,
-               torus_triangles(lighting_slices[fine]), at(1, fine).error.rms) +
-           frame_times(
-               {{"flat", at(0, coarse)}, {"Gouraud", at(1, coarse)}, {"Phong", at(2, coarse)}});
-}
-
 PreparedExperiment interpolation_experiment(const PlanOptions& options) {
     const int size = options.is_quick ? 160 : 320;
     Experiment experiment = image_experiment(size);
@@ -93,8 +77,9 @@ PreparedExperiment interpolation_experiment(const PlanOptions& options) {
             report.charts = {torus_chart(report, names, lighting_slices)};
             for (std::size_t i = 1; i < renderings.methods.size(); i += lighting_slices.size())
                 add_images("Lighting per face, vertex and pixel", renderings, i, 0.5, report);
-            report.finding = interpolation_finding(report);
-        });
+        },
+        {"flat, 576 triangles", "Gouraud, 576 triangles", "Phong, 576 triangles",
+         "Gouraud, 9216 triangles"});
 }
 
 /// Reflectance of the metal at normal incidence, in all channels.
@@ -107,8 +92,7 @@ struct HighlightChoice {
     SpecularModel specular;
     double exponent_factor;  ///< Relative to the exponent of Blinn-Phong.
 };
-/// The methods of the experiment. GGX, the last one, is not among highlight_choices.
-enum class HighlightMethod { phong, phong_sharp, blinn_phong, blinn_phong_wide, ggx };
+constexpr std::size_t phong = 0, blinn_phong = 2;  ///< Indices of choices.
 constexpr std::array highlight_choices = {
     HighlightChoice{"Phong, a quarter of Blinn's exponent", "Phong", "a quarter",
                     SpecularModel::phong, 0.25},
@@ -178,21 +162,6 @@ Chart chart_of(const GlDevice& device, int size) {
     return chart;
 }
 
-std::string highlight_finding(const Experiment& experiment) {
-    using enum HighlightMethod;
-    const auto of = [&](HighlightMethod method) -> const Measurement& {
-        return measurement_at(experiment, method);
-    };
-    return fmt::format(
-               "Both lack the long tails of GGX highlights: Blinn-Phong has a FLIP error of {:.3f} "
-               "(RMS), Phong with highlights of the same width {:.3f}. With the exponent of the "
-               "other model, without the factor of 4, the error is {:.3f} for Blinn-Phong and "
-               "{:.3f} for Phong.",
-               of(blinn_phong).error.rms, of(phong).error.rms, of(blinn_phong_wide).error.rms,
-               of(phong_sharp).error.rms) +
-           frame_times({{"Phong", of(phong)}, {"Blinn-Phong", of(blinn_phong)}, {"GGX", of(ggx)}});
-}
-
 PreparedExperiment highlight_experiment(const PlanOptions& options) {
     const int size = options.is_quick ? 160 : 320;
     constexpr double roughness = 0.4;
@@ -215,12 +184,9 @@ PreparedExperiment highlight_experiment(const PlanOptions& options) {
                              [device = device.get(), chart_size = options.is_quick ? 96 : size](
                                  Experiment& report, const Renderings& renderings) {
                                  report.charts = {chart_of(*device, chart_size)};
-                                 for (const HighlightMethod method :
-                                      {HighlightMethod::phong, HighlightMethod::blinn_phong}) {
-                                     add_images("Highlights of a rough metal", renderings,
-                                                static_cast<std::size_t>(method), 0.5, report);
-                                 }
-                                 report.finding = highlight_finding(report);
+                                 for (const std::size_t i : {phong, blinn_phong})
+                                     add_images("Highlights of a rough metal", renderings, i, 0.5,
+                                                report);
                              });
 }
 
@@ -274,14 +240,7 @@ struct AliasingChoice {
     int samples;
     int pixels_per_side;
 };
-enum class AliasingMethod {
-    averaged,
-    averaged_msaa,
-    averaged_4_pixels,
-    averaged_16_pixels,
-    toksvig,
-    toksvig_4_pixels,
-};
+constexpr std::size_t averaged_normals = 0, averaged_4_pixels = 2, toksvig = 4;  ///< Indices.
 constexpr std::array aliasing_choices = {
     AliasingChoice{"averaged normals", "as sharp as ever", false, 1, 1},
     AliasingChoice{"averaged normals, MSAA", "as sharp as ever", false, 4, 1},
@@ -289,10 +248,6 @@ constexpr std::array aliasing_choices = {
     AliasingChoice{"averaged normals, 4 x 4 pixels", "as sharp as ever", false, 1, 4},
     AliasingChoice{"Toksvig", "widened", true, 1, 1},
     AliasingChoice{"Toksvig, 2 x 2 pixels", "widened", true, 1, 2}};
-
-const AliasingChoice& choice_of(AliasingMethod method) {
-    return aliasing_choices.at(static_cast<std::size_t>(method));
-}
 
 RenderedMethod method_of(const AliasingChoice& choice, const Image& map, double away) {
     return {choice.name,
@@ -315,36 +270,20 @@ Chart distance_chart(const GlDevice& device, const Image& map, int size, int ray
                 .title = "Error by texels along a pixel",
                 .x_label = "texels along a pixel",
                 .y_label = "FLIP"};
-    constexpr std::array methods = {AliasingMethod::averaged, AliasingMethod::averaged_4_pixels,
-                                    AliasingMethod::toksvig};
-    for (const AliasingMethod method : methods)
-        chart.curves.push_back({.method = choice_of(method).name});
+    constexpr std::array methods = {averaged_normals, averaged_4_pixels, toksvig};
+    for (const std::size_t method : methods)
+        chart.curves.push_back({.method = aliasing_choices.at(method).name});
     for (const double texels_per_pixel : {0.5, 1.0, 2.0, 4.0, 8.0, 16.0}) {
         const double distance = distance_for(texels_per_pixel, size);
         const Image ground_truth = supersampled_reference(plane(map, false, distance), size, rays);
         for (std::size_t i = 0; i < chart.curves.size(); ++i) {
-            const RenderedMethod method = method_of(choice_of(methods.at(i)), map, distance);
+            const RenderedMethod method =
+                method_of(aliasing_choices.at(methods.at(i)), map, distance);
             chart.curves[i].points.push_back(
                 {texels_per_pixel, rendered_error(device, method, ground_truth)});
         }
     }
     return chart;
-}
-
-/// \param shown  texels along a pixel
-std::string aliasing_finding(const Experiment& experiment, double shown) {
-    using enum AliasingMethod;
-    const auto of = [&](AliasingMethod method) -> const Measurement& {
-        return measurement_at(experiment, method);
-    };
-    return fmt::format(
-               "At {} texels along a pixel, averaged normals alone have a FLIP error of {:.3f} "
-               "(RMS), widened highlights {:.3f}. Rendering 16 pixels for each pixel reduces the "
-               "former to {:.3f}; multisampling, which affects only edges, to {:.3f}.",
-               shown, of(averaged).error.rms, of(toksvig).error.rms,
-               of(averaged_16_pixels).error.rms, of(averaged_msaa).error.rms) +
-           frame_times({{"16 pixels for each", of(averaged_16_pixels)},
-                        {"widened highlights", of(toksvig)}});
 }
 
 PreparedExperiment specular_aliasing_experiment(const PlanOptions& options) {
@@ -375,10 +314,8 @@ PreparedExperiment specular_aliasing_experiment(const PlanOptions& options) {
         [device = device.get(), map, chart_size = options.is_quick ? size / 2 : size, rays](
             Experiment& report, const Renderings& renderings) {
             report.charts = {distance_chart(*device, map, chart_size, rays)};
-            for (const AliasingMethod method : {AliasingMethod::averaged, AliasingMethod::toksvig})
-                add_images("Highlights at a distance", renderings, static_cast<std::size_t>(method),
-                           0.5, report);
-            report.finding = aliasing_finding(report, shown);
+            for (const std::size_t i : {averaged_normals, toksvig})
+                add_images("Highlights at a distance", renderings, i, 0.5, report);
         });
 }
 
@@ -393,9 +330,6 @@ Scene cube_and_ring() {
     return scene;
 }
 
-enum class EdgeMethod { one_sample, msaa, four_pixels, four_pixels_msaa, sixteen_pixels };
-
-/// In the order of EdgeMethod.
 std::vector<RenderedMethod> edge_methods() {
     const Scene scene = cube_and_ring();
     const auto choices_of = [](const char* way, const char* samples) {
@@ -406,22 +340,6 @@ std::vector<RenderedMethod> edge_methods() {
             {"2 x 2 pixels", choices_of("pixels", "4"), scene, 1, 2},
             {"2 x 2 pixels, MSAA", choices_of("coverage and pixels", "16"), scene, 4, 2},
             {"4 x 4 pixels", choices_of("pixels", "16"), scene, 1, 4}};
-}
-
-std::string edge_finding(const Experiment& experiment) {
-    using enum EdgeMethod;
-    const auto of = [&](EdgeMethod method) -> const Measurement& {
-        return measurement_at(experiment, method);
-    };
-    return fmt::format(
-               "4x multisampling reduces the FLIP error from {:.4f} (RMS) to {:.4f}; rendering 4 "
-               "pixels for each pixel reduces it to {:.4f}, 16 pixels to {:.4f}.",
-               of(one_sample).error.rms, of(msaa).error.rms, of(four_pixels).error.rms,
-               of(sixteen_pixels).error.rms) +
-           frame_times({{"none", of(one_sample)},
-                        {"4x multisampling", of(msaa)},
-                        {"4 pixels", of(four_pixels)},
-                        {"16 pixels", of(sixteen_pixels)}});
 }
 
 PreparedExperiment edge_experiment(const PlanOptions& options) {
@@ -439,13 +357,13 @@ PreparedExperiment edge_experiment(const PlanOptions& options) {
     if (!device->is_available()) return not_rendered(std::move(experiment), *device);
     std::vector<RenderedMethod> methods = edge_methods();
     Image ground_truth = supersampled_reference(methods.front().scene, size, rays);
-    return prepare_rendering(
-        device, std::move(experiment), std::move(methods), std::move(ground_truth),
-        [](Experiment& report, const Renderings& renderings) {
-            for (const EdgeMethod method : {EdgeMethod::one_sample, EdgeMethod::msaa})
-                add_images("Edges", renderings, static_cast<std::size_t>(method), 0.3, report);
-            report.finding = edge_finding(report);
-        });
+    return prepare_rendering(device, std::move(experiment), std::move(methods),
+                             std::move(ground_truth),
+                             [](Experiment& report, const Renderings& renderings) {
+                                 for (const std::size_t i : {0U, 1U})
+                                     add_images("Edges", renderings, i, 0.3, report);
+                             },
+                             {"1 sample", "MSAA, 4 samples", "2 x 2 pixels", "4 x 4 pixels"});
 }
 
 }  // namespace

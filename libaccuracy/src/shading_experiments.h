@@ -28,18 +28,11 @@ PreparedExperiment reflection_experiment(const PlanOptions& options);
 PreparedExperiment glossy_experiment(const PlanOptions& options);
 PreparedExperiment energy_experiment(const PlanOptions& options);
 
-/// One way to compute a formula. It knows its inputs, and writes one result per input.
-struct FormulaMethod {
-    std::string name;
-    Choices choices;
-    std::function<void(std::span<float> results)> compute;
-};
+/// A method for a formula. It knows its inputs, and writes one result per input.
+using FormulaMethod = MethodOn<std::span<float>, void>;
 
 /// Statistics of the absolute differences. NaN counts as undefined.
 ErrorStats formula_error(const FormulaMethod& method, std::span<const double> ground_truth);
-
-/// The methods of fresnel_methods(), in their order.
-enum class FresnelMethod { constant, schlick, schlick_exp2, schlick_82_degrees, table, fresnel };
 
 /// Returns ways to compute the reflectance of a smooth boundary:
 /// - the value at normal incidence for all angles;
@@ -73,7 +66,6 @@ class NormalSamples {
     [[nodiscard]] const std::vector<glm::vec3>& interpolated() const { return interpolated_; }
 
     [[nodiscard]] std::vector<double> exact_radiances() const;
-    [[nodiscard]] double brightest() const;
 
     static const glm::vec3& light();  ///< Unit direction to the light.
     static const glm::vec3& half();   ///< Unit half vector between light and viewer.
@@ -81,9 +73,6 @@ class NormalSamples {
   private:
     std::vector<glm::vec3> interpolated_;
 };
-
-/// The methods of unit_normal_methods(), in their order.
-enum class UnitNormalMethod { interpolated, newton_step, float32, float64 };
 
 /// Shading with the interpolated normal as it is; normalized with one Newton step for the inverse
 /// square root from 1; with a square root in float; and in double.

@@ -184,6 +184,8 @@ std::vector<float> cosines_of_angles(std::size_t count) {
 
 namespace {
 
+constexpr std::size_t schlick = 1;  ///< The index in fresnel_methods().
+
 struct Boundary {
     const char* name;
     std::complex<double> index;
@@ -197,13 +199,6 @@ const std::array boundaries = {Boundary{"water, 1.33", 1.33},
                                Boundary{"aluminium, 0.96 + 6.69i", {0.96, 6.69}},
                                Boundary{"iron, 2.95 + 2.93i", {2.95, 2.93}}};
 
-/// Statistics of the error of Schlick's approximation.
-ErrorStats schlick_error(std::complex<double> index, std::span<const float> cosines) {
-    const std::vector<FormulaMethod> methods = fresnel_methods(index, cosines);
-    return formula_error(methods.at(static_cast<std::size_t>(FresnelMethod::schlick)),
-                         exact_reflectances(index, cosines));
-}
-
 /// The error of Schlick's approximation by angle, with one curve per boundary.
 Chart chart_by_incidence() {
     Chart chart{.id = "angle",
@@ -214,9 +209,7 @@ Chart chart_by_incidence() {
     const std::vector<float> cosines = cosines_of_angles(91);
     for (const Boundary& boundary : boundaries) {
         std::vector<float> actual(cosines.size());
-        fresnel_methods(boundary.index, cosines)
-            .at(static_cast<std::size_t>(FresnelMethod::schlick))
-            .compute(actual);
+        fresnel_methods(boundary.index, cosines).at(schlick).compute(actual);
         const std::vector<double> ground_truth = exact_reflectances(boundary.index, cosines);
         Curve curve{.method = boundary.name};
         for (std::size_t i = 0; i < actual.size(); ++i) {
@@ -259,16 +252,13 @@ Experiment described(const Boundary& boundary, std::size_t angles) {
             .items = static_cast<double>(angles)};
 }
 
-std::string figures(const Experiment& experiment, FresnelMethod method) {
-    const ErrorStats& error = measurement_at(experiment, method).error;
-    return fmt::format("{:.2g} (RMS; at most {:.2g})", error.rms, error.max);
-}
-
 PreparedExperiment fresnel_experiment(const Boundary& boundary) {
     const auto cosines = std::make_shared<const std::vector<float>>(cosines_of_angles(4096));
-    return formula_experiment(described(boundary, cosines->size()), cosines,
-                              fresnel_methods(boundary.index, *cosines),
-                              exact_reflectances(boundary.index, *cosines));
+    PreparedExperiment prepared = formula_experiment(described(boundary, cosines->size()), cosines,
+                                                     fresnel_methods(boundary.index, *cosines),
+                                                     exact_reflectances(boundary.index, *cosines));
+    prepared.compared = {"constant", "Schlick", "Schlick, right at 82 degrees", "Fresnel, float32"};
+    return prepared;
 }
 
 }  // namespace
@@ -276,29 +266,13 @@ PreparedExperiment fresnel_experiment(const Boundary& boundary) {
 PreparedExperiment glass_experiment(const PlanOptions&) {
     PreparedExperiment prepared = fresnel_experiment(boundaries[1]);
     prepared.finish = [](Experiment& report) {
-        const std::vector<float> cosines = cosines_of_angles(901);
-        report.charts = {chart_by_incidence(), index_chart(cosines)};
-        report.finding = fmt::format(
-            "For glass, Schlick's approximation has an error of {}, the reflectance at normal "
-            "incidence {}. The approximation is meant for indices around 1.5: at 2.42 its maximum "
-            "error is {:.2g}, at 3.5 it is {:.2g}.",
-            figures(report, FresnelMethod::schlick), figures(report, FresnelMethod::constant),
-            schlick_error(2.42, cosines).max, schlick_error(3.5, cosines).max);
+        report.charts = {chart_by_incidence(), index_chart(cosines_of_angles(901))};
     };
     return prepared;
 }
 
 PreparedExperiment metal_experiment(const PlanOptions&) {
-    PreparedExperiment prepared = fresnel_experiment(boundaries[6]);
-    prepared.finish = [](Experiment& report) {
-        report.finding = fmt::format(
-            "For iron, Schlick's approximation has an error of {}: metals darken towards grazing "
-            "angles before they brighten, which it cannot represent. With a third parameter, which "
-            "makes it exact at 82 degrees, the error is {}.",
-            figures(report, FresnelMethod::schlick),
-            figures(report, FresnelMethod::schlick_82_degrees));
-    };
-    return prepared;
+    return fresnel_experiment(boundaries[6]);
 }
 
 namespace {
@@ -366,11 +340,6 @@ std::vector<double> NormalSamples::exact_radiances() const {
     for (const glm::vec3& normal : interpolated_)
         ground_truth.push_back(exact_radiance(normal));
     return ground_truth;
-}
-
-double NormalSamples::brightest() const {
-    const std::vector<double> ground_truth = exact_radiances();
-    return *std::max_element(ground_truth.begin(), ground_truth.end());
 }
 
 const glm::vec3& NormalSamples::light() {
@@ -446,19 +415,9 @@ PreparedExperiment unit_normal_experiment(const PlanOptions&) {
         .items = static_cast<double>(samples->count())};
     PreparedExperiment prepared = formula_experiment(
         std::move(experiment), samples, unit_normal_methods(*samples), samples->exact_radiances());
-    prepared.finish = [samples, degrees](Experiment& report) {
-        const auto error = [&](UnitNormalMethod method) {
-            return measurement_at(report, method).error;
-        };
-        report.charts = {chart_by_turn()};
-        report.finding = fmt::format(
-            "If corner normals are {} degrees apart, shading with the interpolated normal without "
-            "normalization has an RMS error of {:.2g} (at most {:.2g}), while the maximum radiance "
-            "is {:.2g}; one Newton step reduces the RMS error to {:.2g}, a square root to {:.1g}.",
-            degrees, error(UnitNormalMethod::interpolated).rms,
-            error(UnitNormalMethod::interpolated).max, samples->brightest(),
-            error(UnitNormalMethod::newton_step).rms, error(UnitNormalMethod::float32).rms);
-    };
+    for (const Method& method : prepared.methods)
+        prepared.compared.push_back(method.name);
+    prepared.finish = [](Experiment& report) { report.charts = {chart_by_turn()}; };
     return prepared;
 }
 

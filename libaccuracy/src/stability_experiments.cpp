@@ -83,17 +83,8 @@ std::string Sweeps::breaks() const {
 
 namespace {
 
-/// A method for inputs of one kind.
-template <typename Input, typename Result>
-struct SweptMethod {
-    std::string name;
-    Choices choices;
-    std::function<Result(const Input&)> compute;
-    bool is_textbook = false;  ///< Code without guards, measured for contrast.
-};
-using SweptNormals = SweptMethod<Mesh, std::vector<glm::vec3>>;
-using SweptTangents = SweptMethod<Mesh, CornerTangents>;
-using SweptSlopes = SweptMethod<WaveMap, Image>;
+using TangentsMethod = MethodOn<Mesh, CornerTangents>;
+using SlopesMethod = MethodOn<WaveMap, Image>;
 
 template <typename Method>
 std::vector<std::string> names_of(const std::vector<Method>& methods) {
@@ -111,7 +102,7 @@ std::vector<std::string> names_of(const std::vector<Method>& methods) {
 /// \param advice  a sentence for the finding, after a space
 template <typename Input, typename Result>
 PreparedExperiment swept_experiment(Experiment report,
-                                    const std::vector<SweptMethod<Input, Result>>& methods,
+                                    const std::vector<MethodOn<Input, Result>>& methods,
                                     Sweeps all_sweeps, std::shared_ptr<const Input> input,
                                     const std::string& advice = {}) {
     const auto sweeps = std::make_shared<Sweeps>(std::move(all_sweeps));
@@ -157,23 +148,14 @@ int torus_cells(bool is_quick) {
     return is_quick ? 32 : 64;
 }
 
-SweptNormals swept(const NormalMethod& method, bool is_textbook = false) {
-    return {method.name(), method.choices(), method.normals, is_textbook};
-}
-
-SweptNormals textbook_normals(const char* name, std::vector<glm::vec3> (*normals)(const Mesh&)) {
-    NormalMethod method;
-    method.weighting = name;
-    method.arithmetic = Arithmetic::float32;
-    method.normals = normals;
-    return swept(method, true);
+NormalMethod textbook_normals(const std::string& name,
+                              std::vector<glm::vec3> (*normals)(const Mesh&)) {
+    return {name + ", float32", {{"weighting", name}, {"arithmetic", "float32"}}, normals, true};
 }
 
 /// The methods of the library in both arithmetics, and textbook code.
-std::vector<SweptNormals> swept_normal_methods() {
-    std::vector<SweptNormals> methods;
-    for (const NormalMethod& method : normal_methods(both_arithmetics))
-        methods.push_back(swept(method));
+std::vector<NormalMethod> swept_normal_methods() {
+    std::vector<NormalMethod> methods = normal_methods(both_arithmetics);
     methods.push_back(textbook_normals("plain area", textbook_area_normals));
     methods.push_back(textbook_normals("plain angle", textbook_angle_normals));
     return methods;
@@ -212,7 +194,7 @@ Mesh with_positions(Mesh mesh, const Change& change) {
 /// A mesh and the methods that are swept on it.
 struct NormalsInput {
     AnalyticMesh ground_truth;
-    std::vector<SweptNormals> methods = swept_normal_methods();
+    std::vector<NormalMethod> methods = swept_normal_methods();
 
     /// The errors of a method on a mesh whose first vertices are those of the ground truth.
     [[nodiscard]] std::vector<float> degrees(std::size_t method, const Mesh& mesh) const {
@@ -276,7 +258,7 @@ PreparedExperiment normals_by_offset(bool is_quick) {
 
 PreparedExperiment normals_of_needles(bool is_quick) {
     const std::size_t count = is_quick ? 1000 : 4000;
-    const auto methods = std::make_shared<const std::vector<SweptNormals>>(swept_normal_methods());
+    const auto methods = std::make_shared<const std::vector<NormalMethod>>(swept_normal_methods());
     Sweeps sweeps(names_of(*methods), broken_degrees);
     sweeps.add("width", "Narrower", "length over width", 12, 1,
                [methods, count](std::size_t method, double value) {
@@ -323,8 +305,8 @@ PreparedExperiment normals_beside_hard_triangles(bool is_quick) {
 }
 
 /// The methods with stored tangents, and textbook code.
-std::vector<SweptTangents> swept_tangent_methods() {
-    std::vector<SweptTangents> methods;
+std::vector<TangentsMethod> swept_tangent_methods() {
+    std::vector<TangentsMethod> methods;
     for (const TangentFrameMethod& method : tangent_methods()) {
         if (method.tangents)
             methods.push_back({method.name, {{"frames", method.name}}, method.tangents});
@@ -338,7 +320,7 @@ constexpr const char* textured_torus_ground_truth =
     "position. Tests verify them by numerical differentiation of the surface.";
 
 /// The errors of a method on a mesh with changed positions and texture coordinates.
-std::vector<float> tangent_degrees(const SweptTangents& method, const TexturedMesh& ground_truth,
+std::vector<float> tangent_degrees(const TangentsMethod& method, const TexturedMesh& ground_truth,
                                    const Change& positions, const Change& texcoords) {
     Mesh mesh = ground_truth.mesh;
     positions.apply(mesh.positions);
@@ -359,7 +341,7 @@ std::vector<float> tangent_degrees(const SweptTangents& method, const TexturedMe
 /// A textured mesh and the methods that are swept on it.
 struct TangentsInput {
     TexturedMesh ground_truth;
-    std::vector<SweptTangents> methods = swept_tangent_methods();
+    std::vector<TangentsMethod> methods = swept_tangent_methods();
 
     [[nodiscard]] std::vector<float> degrees(std::size_t method, const Change& positions,
                                              const Change& texcoords) const {
@@ -434,7 +416,7 @@ PreparedExperiment tangents_by_offset(bool is_quick) {
 
 constexpr double swept_wavelength = 32.0;
 
-SweptSlopes by_kernel(Kernel kernel, Arithmetic arithmetic) {
+SlopesMethod by_kernel(Kernel kernel, Arithmetic arithmetic) {
     const std::string name = name_of(kernel, 0);
     return {fmt::format("{}, {}", name, enum_name(arithmetic)),
             {{"kernel", name}, {"arithmetic", enum_name(arithmetic)}},
@@ -447,8 +429,8 @@ SweptSlopes by_kernel(Kernel kernel, Arithmetic arithmetic) {
             }};
 }
 
-std::vector<SweptSlopes> swept_slope_methods() {
-    std::vector<SweptSlopes> methods;
+std::vector<SlopesMethod> swept_slope_methods() {
+    std::vector<SlopesMethod> methods;
     for (const Kernel kernel : {Kernel::sobel3, Kernel::central7}) {
         for (const Arithmetic arithmetic : {Arithmetic::float64, Arithmetic::float32})
             methods.push_back(by_kernel(kernel, arithmetic));
@@ -467,7 +449,7 @@ int map_side(bool is_quick) {
     return (is_quick ? 64 : 192) + 2 * wave_margin;
 }
 
-std::vector<float> slope_degrees(const SweptSlopes& method, const WaveMap& wave) {
+std::vector<float> slope_degrees(const SlopesMethod& method, const WaveMap& wave) {
     return inner_angles(method.compute(wave), wave.normals, wave_margin);
 }
 
@@ -489,7 +471,7 @@ WaveMap higher(WaveMap wave, double by) {
 /// A wave and the methods that are swept on it.
 struct SlopesInput {
     WaveMap wave;
-    std::vector<SweptSlopes> methods = swept_slope_methods();
+    std::vector<SlopesMethod> methods = swept_slope_methods();
 };
 
 std::shared_ptr<const SlopesInput> swept_wave(bool is_quick) {

@@ -104,13 +104,10 @@ NormalCode as_map(const NormalMapFormat& format, FlatCode decoder) {
     }
     if (decoder != format.flat)
         code.choices.back().second += ", read as " + zero_of(decoder, format.bits);
-    code.encode = [format](const Image& normals) {
-        Report report;
-        return encode_normal_map(normals, format, report);
-    };
-    code.decode = [format, decoder](const Image& codes) {
-        Report report;
-        return decode_normal_map(codes, format.green, decoder, report);
+    code.encode = [format, decoder](const Image& normals) -> NormalDecoder {
+        return [=, codes = encode_normal_map(normals, format)] {
+            return decode_normal_map(codes, format.green, decoder);
+        };
     };
     return code;
 }
@@ -134,14 +131,13 @@ Image without_z(const Image& map) {
 NormalCode as_xy_map(const NormalMapFormat& format) {
     NormalCode code = named("xy", fmt::format("{} bit", format.bits), rounding_of(format),
                             2.0 * format.bits / 8.0, zero_of(format.flat, format.bits));
-    code.encode = [format](const Image& normals) {
-        Report report;
-        const Image map = encode_normal_map(normals, format, report);
-        return format.bits == 8 ? without_z<std::uint8_t>(map) : without_z<std::uint16_t>(map);
-    };
-    code.decode = [format](const Image& codes) {
-        Report report;
-        return decode_xy_map(codes, {}, format.green, format.flat, report);
+    code.has_z = false;
+    code.encode = [format](const Image& normals) -> NormalDecoder {
+        const Image map = encode_normal_map(normals, format);
+        return [format, codes = format.bits == 8 ? without_z<std::uint8_t>(map)
+                                                 : without_z<std::uint16_t>(map)] {
+            return decode_xy_map(codes, {}, format.green, format.flat);
+        };
     };
     return code;
 }
@@ -150,17 +146,17 @@ NormalCode as_xy_map(const NormalMapFormat& format) {
 NormalCode as_ten_bits() {
     constexpr int largest = 511;
     NormalCode code = named("xyz", "10 bit", "nearest", 4.0);
-    code.encode = [](const Image& normals) {
-        return coded<std::uint16_t>(normals, 3, [](const glm::dvec3& n, std::uint16_t* to) {
+    code.encode = [](const Image& normals) -> NormalDecoder {
+        const auto encode = [](const glm::dvec3& n, std::uint16_t* to) {
             for (int axis = 0; axis < 3; ++axis)
                 to[axis] =
                     static_cast<std::uint16_t>(rounded_to_int(n[axis] * largest) + largest + 1);
-        });
-    };
-    code.decode = [](const Image& codes) {
-        return decoded<std::uint16_t>(codes, [](const std::uint16_t* from) {
-            return glm::dvec3(from[0], from[1], from[2]) - (largest + 1.0);
-        });
+        };
+        return [codes = coded<std::uint16_t>(normals, 3, encode)] {
+            return decoded<std::uint16_t>(codes, [](const std::uint16_t* from) {
+                return glm::dvec3(from[0], from[1], from[2]) - (largest + 1.0);
+            });
+        };
     };
     return code;
 }
@@ -168,20 +164,19 @@ NormalCode as_ten_bits() {
 /// (n + 1) / 2 rounded to half floats, as `relief-bake --half` writes.
 NormalCode as_halves() {
     NormalCode code = named("xyz", "half", "nearest", 6.0);
-    code.encode = [](const Image& normals) {
-        Report report;
-        const Image map = encode_normal_map(normals, {.bits = 32}, report);
-        return coded<std::uint16_t>(map, 3, [](const glm::dvec3& sample, std::uint16_t* to) {
+    code.encode = [](const Image& normals) -> NormalDecoder {
+        const auto encode = [](const glm::dvec3& sample, std::uint16_t* to) {
             for (int axis = 0; axis < 3; ++axis)
                 to[axis] = glm::packHalf1x16(static_cast<float>(sample[axis]));
-        });
-    };
-    code.decode = [](const Image& codes) {
-        return decoded<std::uint16_t>(codes, [](const std::uint16_t* from) {
-            const glm::dvec3 sample(glm::unpackHalf1x16(from[0]), glm::unpackHalf1x16(from[1]),
-                                    glm::unpackHalf1x16(from[2]));
-            return 2.0 * sample - 1.0;
-        });
+        };
+        const Image map = encode_normal_map(normals, {.bits = 32});
+        return [codes = coded<std::uint16_t>(map, 3, encode)] {
+            return decoded<std::uint16_t>(codes, [](const std::uint16_t* from) {
+                const glm::dvec3 sample(glm::unpackHalf1x16(from[0]), glm::unpackHalf1x16(from[1]),
+                                        glm::unpackHalf1x16(from[2]));
+                return 2.0 * sample - 1.0;
+            });
+        };
     };
     return code;
 }
@@ -200,18 +195,17 @@ NormalCode as_octahedral(int bits, bool best) {
     // Two codes occupy 16, 24 or 32 bits in existing formats.
     NormalCode code = named("octahedral", fmt::format("2 x {} bit", bits),
                             best ? "best" : "nearest", std::ceil(2.0 * bits / 8.0));
-    code.encode = [largest, best](const Image& normals) {
-        return coded<std::uint16_t>(
-            normals, 2, [largest, best](const glm::dvec3& n, std::uint16_t* to) {
-                const OctahedralCode actual = octahedral_code(n, largest, best);
-                to[0] = static_cast<std::uint16_t>(actual.x + largest);
-                to[1] = static_cast<std::uint16_t>(actual.y + largest);
+    code.encode = [largest, best](const Image& normals) -> NormalDecoder {
+        const auto encode = [largest, best](const glm::dvec3& n, std::uint16_t* to) {
+            const OctahedralCode actual = octahedral_code(n, largest, best);
+            to[0] = static_cast<std::uint16_t>(actual.x + largest);
+            to[1] = static_cast<std::uint16_t>(actual.y + largest);
+        };
+        return [largest, codes = coded<std::uint16_t>(normals, 2, encode)] {
+            return decoded<std::uint16_t>(codes, [largest](const std::uint16_t* from) {
+                return octahedral_direction({from[0] - largest, from[1] - largest}, largest);
             });
-    };
-    code.decode = [largest](const Image& codes) {
-        return decoded<std::uint16_t>(codes, [largest](const std::uint16_t* from) {
-            return octahedral_direction({from[0] - largest, from[1] - largest}, largest);
-        });
+        };
     };
     return code;
 }
@@ -229,20 +223,14 @@ std::vector<NormalCode> normal_codes() {
         code.file_and_options = file_and_options;
         return code;
     };
-    const auto with_id = [](NormalCode code, NormalCodeId id) {
-        code.id = id;
-        return code;
-    };
     std::vector<NormalCode> codes = {
-        offered(with_id(as_map(rounded(8, Dither::none)), NormalCodeId::xyz_8),
-                "OUT.png --bits 8 --zero-code 127.5"),
+        offered(as_map(rounded(8, Dither::none)), "OUT.png --bits 8 --zero-code 127.5"),
         as_map(rounded(8, Dither::none), FlatCode::middle),
-        offered(with_id(as_map(zero_is_a_code(8), FlatCode::middle), NormalCodeId::xyz_8_zero_128),
-                "OUT.png --bits 8 --zero-code 128"),
-        with_id(as_map(zero_is_a_code(8)), NormalCodeId::xyz_8_zero_128_read_as_gltf),
+        offered(as_map(zero_is_a_code(8), FlatCode::middle), "OUT.png --bits 8 --zero-code 128"),
+        as_map(zero_is_a_code(8)),
         offered(as_map(rounded(8, Dither::ordered)),
                 "OUT.png --bits 8 --zero-code 127.5 --dither ordered"),
-        offered(with_id(as_map(rounded(8, Dither::blue_noise)), NormalCodeId::xyz_8_blue_noise),
+        offered(as_map(rounded(8, Dither::blue_noise)),
                 "OUT.png --bits 8 --zero-code 127.5 --dither blue-noise"),
         as_ten_bits(),
         offered(as_map(rounded(16, Dither::none)), "OUT.png --bits 16 --zero-code 127.5"),
@@ -307,41 +295,6 @@ Experiment described(std::size_t texels) {
     return {.error_unit = "degrees", .item = "texel", .items = static_cast<double>(texels)};
 }
 
-/// "The smallest errors: in 2 bytes 'octahedral 2 x 8 bit, best', 0.32 degrees RMS, 0.66 at most;
-/// ..."
-std::string best_by_size(const Experiment& experiment) {
-    std::vector<std::string> parts;
-    for (const double bytes : {2.0, 3.0, 4.0, 6.0}) {
-        const Measurement* best = nullptr;
-        for (const Measurement& one : experiment.measurements) {
-            if (one.cost.stored_bytes != bytes) continue;
-            if (best == nullptr || one.error.rms < best->error.rms) best = &one;
-        }
-        parts.push_back(fmt::format("in {} bytes '{}', {:.2g} degrees RMS, {:.2g} at most", bytes,
-                                    best->method, best->error.rms, best->error.max));
-    }
-    return fmt::format("The smallest errors: {}.", fmt::join(parts, "; "));
-}
-
-std::size_t index_of(std::span<const NormalCode> codes, NormalCodeId id) {
-    const auto found = std::find_if(codes.begin(), codes.end(),
-                                    [&](const NormalCode& code) { return code.id == id; });
-    return static_cast<std::size_t>(found - codes.begin());
-}
-
-/// "8 bits with zero at 128 have an error of 0.18 degrees RMS if they are read so, but of 0.37 ..."
-std::string error_by_decoder(const Experiment& experiment, std::span<const NormalCode> codes) {
-    const auto rms_of = [&](NormalCodeId id) {
-        return measurement_at(experiment, index_of(codes, id)).error.rms;
-    };
-    return fmt::format(
-        " 8 bits with zero at 128 have an error of {:.2g} degrees RMS if they are decoded that "
-        "way, but of {:.2g} by the decoder of glTF and engines, whose zero is 127.5; codes with "
-        "that zero have an error of {:.2g} there.",
-        rms_of(NormalCodeId::xyz_8_zero_128), rms_of(NormalCodeId::xyz_8_zero_128_read_as_gltf),
-        rms_of(NormalCodeId::xyz_8));
-}
-
 constexpr std::array patch_sides = {1, 2, 4, 8, 16, 32};
 
 Chart patches_chart(const Image& ground_truth, const std::vector<NormalCode>& codes) {
@@ -360,23 +313,6 @@ Chart patches_chart(const Image& ground_truth, const std::vector<NormalCode>& co
     }
     return chart;
 }
-
-/// \param chart  the result of patches_chart()
-std::string patches_finding(const Chart& chart, const std::vector<NormalCode>& codes) {
-    const auto points_of = [&](NormalCodeId id) -> const std::vector<CurvePoint>& {
-        return chart.curves.at(index_of(codes, id)).points;
-    };
-    constexpr std::size_t of_16 = 4;
-    static_assert(patch_sides[of_16] == 16);
-    const std::vector<CurvePoint>& rounded = points_of(NormalCodeId::xyz_8);
-    const std::vector<CurvePoint>& dithered = points_of(NormalCodeId::xyz_8_blue_noise);
-    return fmt::format(
-        "In 8 bits a texel has an error of {:.2g} degrees RMS, and the mean of 16 x 16 texels "
-        "still {:.2g}; with blue noise the errors are {:.2g} and {:.2g}.",
-        rounded.front().error, rounded[of_16].error, dithered.front().error, dithered[of_16].error);
-}
-
-}  // namespace
 
 PreparedExperiment normal_reading_experiment(bool is_quick) {
     struct Input {
@@ -403,21 +339,20 @@ PreparedExperiment normal_reading_experiment(bool is_quick) {
     const std::vector<NormalCode> codes = normal_codes();
     for (const NormalCode& code : codes) {
         // The error encodes the normals, and the work decodes them.
-        const auto stored = std::make_shared<Image>();
+        const auto decode = std::make_shared<NormalDecoder>();
         prepared.methods.push_back({.name = code.name,
                                     .choices = code.choices,
                                     .error =
-                                        [input, code, stored] {
-                                            *stored = code.encode(input->normals);
-                                            return map_errors(code.decode(*stored),
-                                                              input->directions);
+                                        [input, code, decode] {
+                                            *decode = code.encode(input->normals);
+                                            return map_errors((*decode)(), input->directions);
                                         },
-                                    .work = [code, stored] { code.decode(*stored); },
+                                    .work = [decode] { (*decode)(); },
                                     .stored_bytes = code.bytes});
     }
-    prepared.finish = [codes](Experiment& report) {
-        report.finding = best_by_size(report) + error_by_decoder(report, codes);
-    };
+    prepared.compared = {"xyz 8 bit", "xyz 8 bit, zero at 128",
+                         "xyz 8 bit, zero at 128, read as glTF does", "octahedral 2 x 8 bit, best",
+                         "octahedral 2 x 16 bit, best"};
     return prepared;
 }
 
@@ -451,14 +386,12 @@ PreparedExperiment normal_writing_experiment() {
              .work = [input, encode = code.encode] { encode(input->normals); },
              .stored_bytes = code.bytes});
     }
+    prepared.compared = {"xyz 8 bit", "xyz 8 bit, blue-noise", "xyz 16 bit"};
     prepared.finish = [input, codes](Experiment& report) {
         report.charts = {patches_chart(input->normals, codes)};
-        report.finding = patches_finding(report.charts.front(), codes);
     };
     return prepared;
 }
-
-namespace {
 
 const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
 
@@ -538,196 +471,109 @@ FrameCodeErrors frame_errors(const SampleFrames& ground_truth, const Frames& act
     return errors;
 }
 
-std::string FrameCode::rounding_name() const {
-    return rounding == FrameRounding::nearest ? "nearest" : "best";
-}
-
-Method FrameCode::method(std::shared_ptr<const SampleFrames> frames) const {
-    return {
-        .name = fmt::format("{}, {}", enum_name(encoding), rounding_name()),
-        .choices = {{"encoding", std::string(enum_name(encoding))}, {"rounding", rounding_name()}},
-        .error =
-            [code = *this, frames = std::move(frames)] {
-                const FrameCodeErrors errors =
-                    frame_code_errors(*frames, code.encoding, code.rounding);
+std::vector<Method> frame_methods(const std::shared_ptr<const SampleFrames>& frames,
+                                  FrameWork work) {
+    std::vector<Method> methods;
+    for (const FrameEncoding encoding : all_frame_encodings) {
+        for (const FrameRounding rounding : {FrameRounding::nearest, FrameRounding::best}) {
+            const bool is_nearest = rounding == FrameRounding::nearest;
+            if (encoding == FrameEncoding::float32 && !is_nearest) continue;
+            const std::string word = is_nearest ? "nearest" : "best";
+            const auto encode = [frames, encoding, rounding] {
+                return encode_frames(frames->float_normals, frames->float_tangents, encoding,
+                                     rounding);
+            };
+            Method& method = methods.emplace_back();
+            method.name = fmt::format("{}, {}", enum_name(encoding), word);
+            method.choices = {{"encoding", std::string(enum_name(encoding))}, {"rounding", word}};
+            method.stored_bytes = 4.0 * static_cast<double>(words_per_frame(encoding));
+            method.error = [frames, encoding, rounding] {
+                const FrameCodeErrors errors = frame_code_errors(*frames, encoding, rounding);
                 return MethodError(errors.both,
                                    errors.flipped_frames == 0
                                        ? ""
                                        : fmt::format("The handedness of {} frames changed.",
                                                      errors.flipped_frames));
-            },
-        .stored_bytes = 4.0 * static_cast<double>(words_per_frame(encoding))};
-}
-
-std::vector<FrameCode> all_frame_codes() {
-    std::vector<FrameCode> codes;
-    for (const FrameEncoding encoding : all_frame_encodings) {
-        codes.push_back({encoding, FrameRounding::nearest});
-        if (encoding != FrameEncoding::float32) codes.push_back({encoding, FrameRounding::best});
+            };
+            if (work == FrameWork::encode)
+                method.work = [encode] { encode(); };
+            else
+                method.work = [encoding, words = encode()] { decode_frames(words, encoding); };
+        }
     }
-    return codes;
+    return methods;
 }
 
 namespace {
 
-/// "A frame of floats needs 28 bytes; in 4 bytes 'angle10, best' has the smallest error, ..."
-std::string frame_code_finding(const Experiment& experiment) {
-    std::vector<std::string> parts;
-    for (const double bytes : {4.0, 8.0}) {
-        const Measurement* best = nullptr;
-        for (const Measurement& one : experiment.measurements) {
-            if (one.cost.stored_bytes != bytes) continue;
-            if (best == nullptr || one.error.rms < best->error.rms) best = &one;
-        }
-        if (best == nullptr) continue;
-        parts.push_back(fmt::format(
-            "in {} bytes '{}' has the smallest error, {:.2g} degrees RMS, {:.2g} at most", bytes,
-            best->method, best->error.rms, best->error.max));
-    }
-    return fmt::format("A frame of floats needs 28 bytes; {}.", fmt::join(parts, "; "));
-}
-
-/// "Searching for the best codes changes ...: octahedral8 0.44 to 0.35 in 3 times the time"
-std::string price_of_best(const Experiment& experiment, std::span<const FrameCode> codes) {
-    std::vector<std::string> parts;
-    const auto& all = experiment.measurements;
-    for (std::size_t i = 0; i + 1 < all.size(); ++i) {
-        const bool is_pair = codes[i].rounding == FrameRounding::nearest &&
-                             codes[i + 1].rounding == FrameRounding::best;
-        if (!is_pair || all[i].cost.stored_bytes != 4.0) continue;
-        std::string part = fmt::format("{} {:.2g} to {:.2g}", enum_name(codes[i].encoding),
-                                       all[i].error.rms, all[i + 1].error.rms);
-        const double times = median_seconds(all[i + 1]) / median_seconds(all[i]);
-        if (times > 0.0) part += fmt::format(" in {:.1f} times the time", times);
-        parts.push_back(std::move(part));
-    }
-    return fmt::format(
-        "Searching for the best codes changes the error in 4 bytes, degrees RMS: {}.",
-        fmt::join(parts, "; "));
-}
-
-/// All codes on the same frames.
-PreparedExperiment on_even_frames(std::shared_ptr<const SampleFrames> frames) {
+/// All encodings on evenly spread frames.
+PreparedExperiment frame_experiment(bool is_quick, FrameWork work) {
+    const auto frames =
+        std::make_shared<const SampleFrames>(even_frames(is_quick ? 20000 : 200000));
+    const bool is_decoding = work == FrameWork::decode;
     PreparedExperiment prepared;
     prepared.report = {
+        .question = is_decoding
+                        ? "How many bytes does a tangent frame need, and how long does decoding "
+                          "take?"
+                        : "How long does encoding tangent frames take, and does the search for the "
+                          "best codes pay off?",
         .ground_truth =
             "The frames in double before encoding, which are orthonormal by construction.",
         .input = fmt::format("{} frames spread evenly over the sphere", frames->normals.size()),
         .error_unit = "degrees",
         .item = "frame",
         .items = static_cast<double>(frames->normals.size())};
-    for (const FrameCode& code : all_frame_codes()) {
-        prepared.methods.push_back(code.method(frames));
-    }
+    prepared.methods = frame_methods(frames, work);
+    prepared.compared = {"float32, nearest",  "octahedral8, nearest", "octahedral8, best",
+                         "angle10, nearest",  "angle10, best",        "octahedral16, best",
+                         "quaternion16, best"};
     return prepared;
 }
 
-std::shared_ptr<const SampleFrames> sampled_frames(bool is_quick) {
-    return std::make_shared<const SampleFrames>(even_frames(is_quick ? 20000 : 200000));
-}
-
-PreparedExperiment frame_reading_experiment(bool is_quick) {
-    const auto frames = sampled_frames(is_quick);
-    PreparedExperiment prepared = on_even_frames(frames);
-    prepared.report.question =
-        "How many bytes does a tangent frame need, and how long does decoding take?";
-    const std::vector<FrameCode> codes = all_frame_codes();
-    for (std::size_t i = 0; i < codes.size(); ++i) {
-        Report ignored;
-        prepared.methods[i].work = [encoding = codes[i].encoding,
-                                    words = encode_frames(frames->float_normals,
-                                                          frames->float_tangents, codes[i].encoding,
-                                                          codes[i].rounding, ignored)] {
-            Report report;
-            decode_frames(words, encoding, report);
-        };
-    }
-    prepared.finish = [](Experiment& report) { report.finding = frame_code_finding(report); };
-    return prepared;
-}
-
-PreparedExperiment frame_writing_experiment(bool is_quick) {
-    const auto frames = sampled_frames(is_quick);
-    PreparedExperiment prepared = on_even_frames(frames);
-    prepared.report.question =
-        "How long does encoding tangent frames take, and does the search for the best codes pay "
-        "off?";
-    const std::vector<FrameCode> codes = all_frame_codes();
-    for (std::size_t i = 0; i < codes.size(); ++i) {
-        prepared.methods[i].work = [frames, code = codes[i]] {
-            Report ignored;
-            encode_frames(frames->float_normals, frames->float_tangents, code.encoding,
-                          code.rounding, ignored);
-        };
-    }
-    prepared.finish = [codes](Experiment& report) {
-        report.finding = price_of_best(report, codes);
-    };
-    return prepared;
-}
-
-}  // namespace
-
-namespace {
-
-/// One way to compress the normals of a map for a GPU.
-struct Compression {
-    std::string name;
-    Choices choices;
-    double bytes = 0.0;                         ///< Per texel.
-    std::function<void(const Image&)> encode;   ///< The work: normals to bytes.
-    std::function<Image(const Image&)> stored;  ///< Normals that a GPU reads.
-    bool has_z = true;                          ///< Otherwise shaders rebuild z after filtering.
-    bool is_slow = false;                       ///< Left out of charts.
-};
-
-Image decoded_blocks(std::span<const std::byte> blocks, BlockFormat format, const Image& normals) {
-    const Image image = decode_blocks(blocks, format, normals.width, normals.height);
+Image decoded_blocks(std::span<const std::byte> blocks, BlockFormat format, int width, int height) {
+    const Image image = decode_blocks(blocks, format, width, height);
     const FlatCode flat = is_signed(format) ? FlatCode::middle : FlatCode::half;
     if (image.channels == 2) return decode_xy_map(image, {0, 1}, Green::up, flat);
     return decode_normal_map(image, Green::up, flat);
 }
 
-Compression as_blocks(BlockFormat format, BlockQuality quality) {
-    // BC7 is encoded from the exact components, not from codes of 8 bits.
-    const auto encode = [format, quality](const Image& normals) {
-        if (channels_of(format) == 2)
-            return encode_normal_blocks(normals, {.format = format, .quality = quality});
-        return encode_blocks(encode_normal_map(normals, {.bits = 32}), format, quality);
+NormalCode as_blocks(BlockFormat format, BlockQuality quality) {
+    NormalCode code;
+    code.name = fmt::format("{}, {}", enum_name(format), enum_name(quality));
+    code.choices = {{"format", enum_name(format)}, {"quality", enum_name(quality)}};
+    code.bytes = static_cast<double>(bytes_per_block(format)) / 16.0;
+    code.has_z = channels_of(format) > 2;
+    code.is_slow = format == BlockFormat::bc7;
+    code.encode = [format, quality](const Image& normals) -> NormalDecoder {
+        // BC7 is encoded from the exact components, not from codes of 8 bits.
+        auto blocks =
+            channels_of(format) == 2
+                ? encode_normal_blocks(normals, {.format = format, .quality = quality})
+                : encode_blocks(encode_normal_map(normals, {.bits = 32}), format, quality);
+        return [format, blocks = std::move(blocks), width = normals.width,
+                height = normals.height] { return decoded_blocks(blocks, format, width, height); };
     };
-    return {.name = fmt::format("{}, {}", enum_name(format), enum_name(quality)),
-            .choices = {{"format", enum_name(format)}, {"quality", enum_name(quality)}},
-            .bytes = static_cast<double>(bytes_per_block(format)) / 16.0,
-            .encode = [encode](const Image& normals) { encode(normals); },
-            .stored =
-                [encode, format](const Image& normals) {
-                    return decoded_blocks(encode(normals), format, normals);
-                },
-            .has_z = channels_of(format) > 2,
-            .is_slow = format == BlockFormat::bc7};
+    return code;
 }
 
-Compression as_texels(const NormalCode& code) {
-    return {.name = code.name,
-            .choices = {{"format", code.name}, {"quality", "none"}},
-            .bytes = code.bytes,
-            .encode = [code](const Image& normals) { code.encode(normals); },
-            .stored = [code](const Image& normals) { return code.stored(normals); },
-            .has_z = code.name.starts_with("xyz")};
-}
-
-std::vector<Compression> compressions() {
+std::vector<NormalCode> compressions() {
     using enum BlockQuality;
-    std::vector<Compression> methods;
+    std::vector<NormalCode> methods;
     for (const BlockFormat format : {BlockFormat::bc5, BlockFormat::bc5_snorm, BlockFormat::bc7}) {
         for (const BlockQuality quality : {fast, normal, best})
             methods.push_back(as_blocks(format, quality));
     }
+    std::vector<NormalCode> texels;
     for (const int bits : {8, 16})
-        methods.push_back(as_texels(as_xy_map({.bits = bits, .flat = FlatCode::half})));
+        texels.push_back(as_xy_map({.bits = bits, .flat = FlatCode::half}));
     for (const int bits : {8, 16})
-        methods.push_back(as_texels(as_map({.bits = bits, .flat = FlatCode::half})));
-    methods.push_back(as_texels(as_octahedral(8, true)));
+        texels.push_back(as_map({.bits = bits, .flat = FlatCode::half}));
+    texels.push_back(as_octahedral(8, true));
+    for (NormalCode& code : texels) {
+        code.choices = {{"format", code.name}, {"quality", "none"}};
+        methods.push_back(std::move(code));
+    }
     return methods;
 }
 
@@ -774,34 +620,20 @@ Chart wavelengths_chart(int side) {
                 .title = "Shorter waves",
                 .x_label = "shortest wave, texels",
                 .y_label = "RMS error, degrees"};
-    const std::vector<Compression> methods = compressions();
-    for (const Compression& method : methods) {
+    const std::vector<NormalCode> methods = compressions();
+    for (const NormalCode& method : methods) {
         if (!method.is_slow) chart.curves.push_back({.method = method.name});
     }
     for (const double shortest : {5.0, 10.0, 20.0, 40.0}) {
         const CompressedWaves waves(side, shortest);
         std::size_t curve = 0;
-        for (const Compression& method : methods) {
+        for (const NormalCode& method : methods) {
             if (method.is_slow) continue;
             const ErrorStats error = map_errors(method.stored(waves.normals), waves.surface);
             chart.curves[curve++].points.push_back({shortest, curve_error(error)});
         }
     }
     return chart;
-}
-
-/// "In 1 byte per texel 'bc5, best' has the smallest error, 0.17 degrees RMS; 'bc5, fast' has
-/// 0.22."
-std::string compression_finding(const Experiment& report) {
-    const Measurement* best = nullptr;
-    for (const Measurement& one : report.measurements) {
-        if (one.cost.stored_bytes != 1.0) continue;
-        if (best == nullptr || one.error.rms < best->error.rms) best = &one;
-    }
-    const Measurement& fast = report.measurements.front();
-    return fmt::format(
-        "In 1 byte per texel '{}' has the smallest error, {:.2g} degrees RMS; '{}' has {:.2g}.",
-        best->method, best->error.rms, fast.method, fast.error.rms);
 }
 
 PreparedExperiment compression_experiment(bool is_quick, bool is_filtered) {
@@ -819,10 +651,10 @@ PreparedExperiment compression_experiment(bool is_quick, bool is_filtered) {
     prepared.report.input = fmt::format(
         "{} x {} texels of 8 waves of 20 texels and more, slope 0.35 (RMS)", side, side);
     prepared.costs.memory = false;
-    std::vector<Compression> methods = compressions();
+    std::vector<NormalCode> methods = compressions();
     // A GPU filters codes, and means of octahedral codes across a fold are not normals.
     if (is_filtered) methods.pop_back();
-    for (const Compression& method : methods) {
+    for (const NormalCode& method : methods) {
         prepared.methods.push_back(
             {.name = method.name,
              .choices = method.choices,
@@ -835,9 +667,9 @@ PreparedExperiment compression_experiment(bool is_quick, bool is_filtered) {
              .work = [waves, encode = method.encode] { encode(waves->normals); },
              .stored_bytes = method.bytes});
     }
+    prepared.compared = {"bc5, fast", "bc5, best", "bc7, fast", "bc7, best", "xyz 8 bit"};
     prepared.finish = [side, is_filtered](Experiment& report) {
         if (!is_filtered) report.charts = {wavelengths_chart(std::min(side, 256))};
-        report.finding = compression_finding(report);
     };
     return prepared;
 }
@@ -858,9 +690,9 @@ std::vector<PlannedExperiment> storage_plan(const PlanOptions& options) {
             {"storage/smooth-surface", Subject::storage, "A smooth surface in few bits, written",
              normal_writing_experiment},
             {"storage/frames", Subject::storage, "Tangent frames in few bits",
-             [is_quick] { return frame_reading_experiment(is_quick); }},
+             [is_quick] { return frame_experiment(is_quick, FrameWork::decode); }},
             {"storage/frames-written", Subject::storage, "Tangent frames in few bits, written",
-             [is_quick] { return frame_writing_experiment(is_quick); }}};
+             [is_quick] { return frame_experiment(is_quick, FrameWork::encode); }}};
 }
 
 }  // namespace relief::accuracy::detail

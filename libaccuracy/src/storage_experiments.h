@@ -20,28 +20,22 @@
 
 namespace relief::accuracy::detail {
 
-/// The codes to which findings refer.
-enum class NormalCodeId {
-    other,
-    xyz_8,
-    xyz_8_zero_128,
-    xyz_8_zero_128_read_as_gltf,
-    xyz_8_blue_noise,
-};
+/// Decodes the normals that were encoded: three float channels.
+using NormalDecoder = std::function<Image()>;
 
-/// One way to encode and decode the normals of a map.
+/// One way to store the normals of a map, as texels or as blocks of GPUs.
 struct NormalCode {
     std::string name;  ///< "xyz 8 bit, blue-noise"
     Choices choices;
     double bytes = 0.0;  ///< Per texel, in an existing texture format.
     /// Takes three float channels with unit normals. Dithering depends on the position of a texel.
-    std::function<Image(const Image& normals)> encode;
-    std::function<Image(const Image& codes)> decode;
+    std::function<NormalDecoder(const Image& normals)> encode;
     /// Arguments of relief-bake convert that write this code; empty if it cannot.
     std::string file_and_options{};
-    NormalCodeId id = NormalCodeId::other;
+    bool has_z = true;     ///< Otherwise shaders rebuild z after filtering.
+    bool is_slow = false;  ///< Left out of charts.
 
-    [[nodiscard]] Image stored(const Image& normals) const { return decode(encode(normals)); }
+    [[nodiscard]] Image stored(const Image& normals) const { return encode(normals)(); }
 };
 
 /// x, y, z in 8, 10 and 16 bits, half and float (stored as (n + 1) / 2); x and y alone; octahedral
@@ -95,25 +89,11 @@ FrameCodeErrors frame_code_errors(const SampleFrames& ground_truth, FrameEncodin
 /// The errors of decoded frames.
 FrameCodeErrors frame_errors(const SampleFrames& ground_truth, const Frames& actual);
 
-/// An encoding with a rounding mode.
-struct FrameCode {
-    FrameEncoding encoding = FrameEncoding::float32;
-    FrameRounding rounding = FrameRounding::nearest;
+/// The work of frame_methods().
+enum class FrameWork { encode, decode };
 
-    [[nodiscard]] std::string rounding_name() const;
-    /// The method without work to time.
-    [[nodiscard]] Method method(std::shared_ptr<const SampleFrames> frames) const;
-};
-
-/// Every encoding with both rounding modes.
-std::vector<FrameCode> all_frame_codes();
-
-// The experiments of storage_plan() with maps.
-
-/// Unit normals in maps and vertex buffers: their errors, and the time of decoding.
-PreparedExperiment normal_reading_experiment(bool is_quick);
-
-/// A smooth surface: the time of encoding, and the effect of dithering on the mean of a patch.
-PreparedExperiment normal_writing_experiment();
+/// Every encoding with both rounding modes. The choices are the encoding and the rounding.
+std::vector<Method> frame_methods(const std::shared_ptr<const SampleFrames>& frames,
+                                  FrameWork work);
 
 }  // namespace relief::accuracy::detail

@@ -85,30 +85,6 @@ std::vector<RenderedMethod> frame_methods() {
     return all;
 }
 
-std::string frames_finding(const Experiment& experiment) {
-    constexpr std::size_t coarse = 0;
-    constexpr std::size_t middle = 1;
-    constexpr std::size_t fine = 2;
-    const auto stored = [&](std::size_t slices) -> const Measurement& {
-        return measurement_at(experiment, slices);
-    };
-    const auto derived = [&](std::size_t slices) -> const Measurement& {
-        return measurement_at(experiment, rendered_slices.size() + slices);
-    };
-    return fmt::format(
-               "With {} triangles the images have a FLIP error of {:.3f} (RMS) with stored frames "
-               "and {:.3f} with derived ones, with {} triangles {:.3f} and {:.3f}.",
-               torus_triangles(rendered_slices[coarse]), stored(coarse).error.rms,
-               derived(coarse).error.rms, torus_triangles(rendered_slices[fine]),
-               stored(fine).error.rms, derived(fine).error.rms) +
-           frame_times(
-               {{fmt::format("stored, {} triangles", torus_triangles(rendered_slices[middle])),
-                 stored(middle)},
-                {fmt::format("derived, {} triangles", torus_triangles(rendered_slices[middle])),
-                 derived(middle)},
-                {"no normal map", experiment.measurements.back()}});
-}
-
 /// Compares stored frames with frames that shaders derive; only in rendered images do derived
 /// frames cost time.
 PreparedExperiment rendered_frames_experiment(const PlanOptions& options) {
@@ -134,8 +110,8 @@ PreparedExperiment rendered_frames_experiment(const PlanOptions& options) {
             report.charts = {torus_chart(report, names, rendered_slices)};
             for (std::size_t i = 0; i < renderings.methods.size(); i += rendered_slices.size())
                 add_images("A normal map on few triangles", renderings, i, 0.5, report);
-            report.finding = frames_finding(report);
-        });
+        },
+        {"stored, 9216 triangles", "derived, 9216 triangles", "no normal map, 9216 triangles"});
 }
 
 constexpr int cells_of_tangent_tables = 64;  ///< The same number as in docs/tangents.md.
@@ -166,9 +142,6 @@ Choices choices_of(const TangentFrameMethod& method) {
 double stored_bytes_of(const TangentFrameMethod& method) {
     return method.tangents ? 28.0 : 12.0;
 }
-
-/// The place of the exact frames, which are listed before compared_tangent_methods().
-constexpr std::size_t exact_frames_index = 0;
 
 Method exact_frames(const std::shared_ptr<const TexturedMesh>& ground_truth) {
     return {.name = "surface's own",
@@ -258,24 +231,6 @@ Chart bevels_chart() {
     return chart;
 }
 
-/// "Of the stored frames, mikktspace has the smallest error, ... degrees RMS (...)."
-std::string tangents_finding(const Experiment& experiment) {
-    const Measurement* best = nullptr;
-    const Measurement* derived = nullptr;
-    const std::vector<TangentFrameMethod> methods = compared_tangent_methods();
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-        const Measurement& one = measurement_at(experiment, exact_frames_index + 1 + i);
-        if (methods[i].basis == ShaderBasis::derived) derived = &one;
-        if (methods[i].basis != ShaderBasis::as_interpolated) continue;
-        if (best == nullptr || one.error.rms < best->error.rms) best = &one;
-    }
-    return fmt::format(
-        "Of the stored frames, {} has the smallest error, {:.3g} degrees RMS (the exact frames of "
-        "the surface: {:.3g}); frames derived in the shader have an error of {:.3g}.",
-        best->method, best->error.rms, measurement_at(experiment, exact_frames_index).error.rms,
-        derived->error.rms);
-}
-
 using relief::accuracy::detail::described;
 
 Experiment described(const TexturedMesh& ground_truth) {
@@ -293,7 +248,8 @@ PreparedExperiment on_mesh(TexturedMesh mesh, const std::string& input) {
     prepared.report.input =
         fmt::format("{}: {} triangles", input, ground_truth->mesh.triangles.size());
     prepared.methods = methods_on(ground_truth);
-    prepared.finish = [](Experiment& report) { report.finding = tangents_finding(report); };
+    for (const TangentFrameMethod& method : tangent_methods())
+        prepared.compared.push_back(method.name);
     return prepared;
 }
 
@@ -308,7 +264,6 @@ PreparedExperiment on_case(const TexturedCase& one, bool is_quick) {
         one.name);
     prepared.costs.memory = false;
     prepared.finish = [one, is_quick](Experiment& report) {
-        report.finding = tangents_finding(report);
         report.charts = {one.triangulation ? cells_chart(one, is_quick) : bevels_chart()};
     };
     return prepared;
@@ -322,18 +277,6 @@ PreparedExperiment tangents_on_large_mesh(bool is_quick) {
                 fmt::format("torus, jittered, {} x {} cells", cells, cells));
     prepared.report.question = "How much time and memory do the tangents of a large mesh cost?";
     return prepared;
-}
-
-std::string mismatch_finding(const Experiment& experiment) {
-    const auto by_rms = [](const Measurement& a, const Measurement& b) {
-        return a.error.rms < b.error.rms;
-    };
-    const auto& all = experiment.measurements;
-    const Measurement& worst = *std::max_element(all.begin(), all.end(), by_rms);
-    return fmt::format(
-        "A map that is read in the basis of its bake is exact to {:.1g} degrees. The worst pair "
-        "has an error of {:.3g} degrees RMS, {:.3g} at most: {}.",
-        most_accurate(experiment)->error.rms, worst.error.rms, worst.error.max, worst.method);
 }
 
 PreparedExperiment mismatches(bool is_quick) {
@@ -359,7 +302,6 @@ PreparedExperiment mismatches(bool is_quick) {
                  }});
         }
     }
-    prepared.finish = [](Experiment& report) { report.finding = mismatch_finding(report); };
     return prepared;
 }
 

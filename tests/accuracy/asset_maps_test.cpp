@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -87,7 +88,9 @@ TEST(AssetHeights, AreHeldToABoundWithTheErrorOfTheMapItself) {
     const double map_error = own.experiment.reference_error.value();
     ASSERT_GT(map_error, 0.5) << "the field must be noisy enough for this test";
     // Methods are within half a degree of the reference, but the reference has a larger error.
-    EXPECT_LT(most_accurate(own.experiment)->error.rms, 0.5);
+    const auto& all = own.experiment.measurements;
+    EXPECT_TRUE(std::any_of(all.begin(), all.end(),
+                            [](const Measurement& one) { return one.error.rms < 0.5; }));
     EXPECT_EQ(own.recommendation.method, std::nullopt);
     EXPECT_THAT(own.recommendation.description,
                 HasSubstr("no method is within 0.5 degrees (99 %): the smallest error "));

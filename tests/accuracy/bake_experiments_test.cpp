@@ -123,28 +123,6 @@ const std::vector<Experiment>& quick_experiments() {
     return all;
 }
 
-TEST_LABELS(slow, not_sanitized);
-TEST(BakeExperiments, FindFewerDegreesForMoreRays) {
-    const std::vector<Experiment>& all = quick_experiments();
-    test::expect_whole(all, Subject::bake);
-    const Experiment& samples = all.front();
-    ASSERT_EQ(samples.id, "bake/samples");
-    const auto rms = [&](const char* method) {
-        return test::measurement_of(samples, method).error.rms;
-    };
-    EXPECT_LT(rms("16 rays, float"), 0.5 * rms("4 rays, float"));
-    EXPECT_LT(rms("4 rays, float"), 0.5 * rms("1 ray, float"));
-    // An 8-bit code is 1 / 127 wide. Rounding has an error of 1 / sqrt(12) codes in x and in y, and
-    // a little more on slopes, where z counts as well.
-    const double of_codes =
-        1.0 / 127.0 / std::sqrt(12.0) * std::sqrt(2.0) * 180.0 / std::numbers::pi;
-    EXPECT_NEAR(std::sqrt(rms("16 rays, 8 bit") * rms("16 rays, 8 bit") -
-                          rms("16 rays, float") * rms("16 rays, float")),
-                of_codes, 0.25 * of_codes);
-    EXPECT_LT(rms("16 rays, 16 bit"), 1.01 * rms("16 rays, float"));
-    EXPECT_NEAR(samples.charts.front().curves.back().order.value(), -1.0, 0.35);
-}
-
 TEST_LABELS(not_sanitized);
 TEST(BakeExperiments, HavePicturesOfErrorsAndMaps) {
     const std::vector<Experiment>& all = quick_experiments();
@@ -165,22 +143,6 @@ TEST(BakeExperiments, HavePicturesOfErrorsAndMaps) {
         EXPECT_LT(off, 0.15) << pair.before_label;
         EXPECT_GT(off, 0.01) << "outlines differ: " << pair.before_label;
     }
-}
-
-TEST_LABELS(slow, not_sanitized);
-TEST(BakeExperiments, FindThatRaysPayWhereTheFirstDiffer) {
-    const std::vector<Experiment>& all = quick_experiments();
-    const Experiment& adaptive = all.back();
-    ASSERT_EQ(adaptive.id, "bake/adaptive");
-    const std::vector<CurvePoint>& points =
-        test::curve_of(adaptive.charts.front(), "more where they differ").points;
-    for (std::size_t i = 1; i < points.size(); ++i)
-        EXPECT_LE(points[i].error, points[i - 1].error) << i;
-    const double everywhere = test::measurement_of(adaptive, "16 rays, float").error.rms;
-    EXPECT_NEAR(points.back().error, everywhere, 0.05 * everywhere);
-    const CurvePoint& all_everywhere =
-        test::curve_of(adaptive.charts.front(), "as many everywhere").points.back();
-    EXPECT_LT(points.back().x, all_everywhere.x);
 }
 
 }  // namespace

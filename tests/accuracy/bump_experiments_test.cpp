@@ -2,7 +2,6 @@
 // The errors of kernels against their responses in closed form, and the results of the experiments.
 #include "experiment_parts.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +14,6 @@
 #include "experiment_checks.h"
 #include "relief/accuracy/asset.h"
 #include "relief/mesh/report.h"
-#include "support/labels.h"
 
 namespace relief::test {
 using namespace relief::accuracy;
@@ -245,91 +243,6 @@ TEST(SurfaceAt, IsTheSameSurfaceInFinerTexels) {
                             fine.heights.as<float>()[128 * 2 * y + 2 * x]);
         }
     }
-}
-
-using testing::HasSubstr;
-
-/// The experiments, run once per process.
-const std::vector<Experiment>& quick_experiments() {
-    static const std::vector<Experiment> all = run_quick(Subject::bump);
-    return all;
-}
-
-const Experiment& quick(const std::string& title) {
-    return titled(quick_experiments(), title);
-}
-
-TEST_LABELS(not_sanitized);
-TEST(BumpExperiments, AreComplete) {
-    expect_whole(quick_experiments(), Subject::bump);
-}
-
-TEST_LABELS(not_sanitized);
-TEST(BumpExperiments, HaveTheErrorsOfThePage) {
-    const Experiment detailed = quick("Bump: detailed, 8 bit");
-    EXPECT_EQ(detailed.id, "bump/detailed-8");
-    EXPECT_EQ(detailed.measurements.size(), 52U);  // 13 kernels, 2 arithmetics, 2 ways with steps.
-    EXPECT_NEAR(measurement_of(detailed, "sobel3, float64").error.rms, 1.3, 0.05);
-    EXPECT_NEAR(measurement_of(detailed, "central7, float64").error.rms, 2.3, 0.05);
-    EXPECT_NEAR(measurement_of(detailed, "scharr3, float64, steps smoothed away").error.rms, 1.4,
-                0.05);
-    EXPECT_THAT(detailed.finding,
-                HasSubstr("has the smallest error, 1.3 degrees RMS. float32 changes"));
-    EXPECT_THAT(detailed.finding, HasSubstr("On this map --kernel auto selects sobel3."));
-    const Experiment noisy = quick("Bump: noise 0.03, float");
-    EXPECT_EQ(noisy.measurements.size(), 26U);
-    EXPECT_THAT(noisy.finding, HasSubstr(" (sobel3: 0.99). "));
-    EXPECT_NEAR(measurement_of(noisy, "gaussian 4, float64").error.rms, 0.32, 0.005);
-    EXPECT_NEAR(measurement_of(noisy, "central3, float32").error.rms, 1.6, 0.05);
-}
-
-TEST(BumpExperiments, ErrorsFallAtTheOrderOfTheKernel) {
-    std::size_t checked = 0;
-    const Chart waves = quick("Bump: a wave in float").charts.front();
-    const Chart resolutions = quick("Bump: a large map").charts.front();
-    for (const Chart& chart : {waves, resolutions}) {
-        EXPECT_EQ(chart.curves.size(), 13U);
-        for (const Curve& curve : chart.curves) {
-            if (!curve.order) continue;  // Truncation dominates at too few points.
-            EXPECT_NEAR(*curve.order, curve.expected_order.value(), 0.35)
-                << chart.id << " " << curve.method;
-            ++checked;
-        }
-    }
-    EXPECT_GE(checked, 22U);
-    EXPECT_NEAR(curve_of(waves, "central5").order.value(), -4.0, 0.1);
-    EXPECT_NEAR(curve_of(waves, "central7").order.value(), -6.0, 0.2);
-}
-
-TEST(BumpExperiments, CodesOfEightBitsMakeLongWavesWorseForSmallKernels) {
-    const Chart chart = quick("Bump: a wave in 8 bit").charts.front();
-    const Curve& small = curve_of(chart, "central3");
-    const Curve& wide = curve_of(chart, "gaussian 8");
-    EXPECT_FALSE(small.expected_order);
-    EXPECT_EQ(small.points.back().x, 256.0);
-    EXPECT_LT(small.points[2].error, wide.points[2].error);  // At waves of 8 texels.
-    EXPECT_GT(small.points.back().error, 4.0 * wide.points.back().error);
-}
-
-TEST(BumpExperiments, HeatMapsShowErrorsOfKernels) {
-    const Experiment mixed = quick("Bump: mixed, 8 bit");
-    ASSERT_EQ(mixed.heat_maps.size(), 2U);
-    const auto mean_of_columns = [](const HeatMap& map, int begin, int end) {
-        double sum = 0.0;
-        for (int y = 0; y < map.errors.height; ++y) {
-            for (int x = begin; x < end; ++x) {
-                const auto texel = static_cast<std::size_t>(y * map.errors.width + x);
-                sum += static_cast<double>(map.errors.as<float>()[texel]);
-            }
-        }
-        return sum / (map.errors.height * (end - begin));
-    };
-    const HeatMap& small = mixed.heat_maps[0];
-    const HeatMap& wide = mixed.heat_maps[1];
-    EXPECT_EQ(small.errors.width, 256);
-    // The wide kernel fails on the short waves in the middle and is better on the long ones.
-    EXPECT_GT(mean_of_columns(wide, 112, 144), 1.5 * mean_of_columns(small, 112, 144));
-    EXPECT_LT(mean_of_columns(wide, 0, 16), 0.5 * mean_of_columns(small, 0, 16));
 }
 
 }  // namespace

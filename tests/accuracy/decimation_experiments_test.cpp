@@ -2,7 +2,6 @@
 // The nearest point of exact surfaces, samples over the area, and the results of the experiments.
 #include "decimation_experiments.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +9,6 @@
 #include "experiment_checks.h"
 #include "experiment_parts.h"
 #include "relief/mesh/topology.h"
-#include "support/labels.h"
 
 namespace relief::test {
 using namespace relief::accuracy;
@@ -72,59 +70,6 @@ TEST(SurfaceErrors, AreTheDistanceAndTheAngleOfShiftedTriangles) {
     // The largest angle is at corners: the edges span 2.8 degrees along a parallel.
     EXPECT_LT(angle.max, 2.0);
     EXPECT_GT(angle.rms, 0.3);
-}
-
-const std::vector<Experiment>& quick_experiments() {
-    static const std::vector<Experiment> all = run_quick(Subject::decimation);
-    return all;
-}
-
-TEST_LABELS(not_sanitized);
-TEST(DecimationExperiments, AreComplete) {
-    expect_whole(quick_experiments(), Subject::decimation);
-    EXPECT_EQ(quick_experiments().size(), 5U);
-}
-
-TEST_LABELS(not_sanitized);
-TEST(DecimationExperiments, ErrorsFallAtTheOrderOfTheory) {
-    std::size_t checked = 0;
-    for (const Experiment& experiment : quick_experiments()) {
-        for (const Chart& chart : experiment.charts) {
-            for (const Curve& curve : chart.curves) {
-                EXPECT_NEAR(curve.order.value(), curve.expected_order.value(), 0.15)
-                    << experiment.id << " " << curve.method;
-                ++checked;
-            }
-        }
-    }
-    EXPECT_EQ(checked, 16U);
-}
-
-TEST_LABELS(not_sanitized);
-TEST(DecimationExperiments, AllMethodsReachTheSameNumberOfTriangles) {
-    for (const Experiment& experiment : quick_experiments()) {
-        for (const Measurement& one : experiment.measurements) {
-            const double triangles = std::stod(one.note);
-            EXPECT_NEAR(triangles, experiment.items / 16.0, 2.0)
-                << experiment.id << " " << one.method;
-        }
-    }
-}
-
-TEST_LABELS(not_sanitized);
-TEST(DecimationExperiments, PreservedFeaturesCostAccuracy) {
-    const auto error = [](const char* method) -> const ErrorStats& {
-        return measurement_of(titled(quick_experiments(), "Decimation: torus, distance"), method)
-            .error;
-    };
-    EXPECT_LT(error("positions").rms, error("default").rms);
-    EXPECT_LT(error("default").rms, error("keep seams").rms);
-    EXPECT_LT(error("default").rms, 0.6 * error("keep positions").rms);
-    // The limit applies to the triangles of the input, which differ from the surface themselves.
-    EXPECT_LT(
-        measurement_of(titled(quick_experiments(), "Decimation: torus, angle"), "within 30 degrees")
-            .error.max,
-        36.0);
 }
 
 }  // namespace

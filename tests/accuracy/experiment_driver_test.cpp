@@ -55,8 +55,6 @@ RunOptions untimed() {
     return options;
 }
 
-enum class Fruit { apple, none, pear };
-
 TEST(Measured, GivesEachItsOwnCostAndNoneToThoseWithoutWork) {
     std::size_t first = 0;
     std::size_t last = 0;
@@ -67,18 +65,18 @@ TEST(Measured, GivesEachItsOwnCostAndNoneToThoseWithoutWork) {
     ASSERT_EQ(experiment.measurements.size(), 3U);
     EXPECT_GT(first, 0U);
     EXPECT_GT(last, 0U);
-    const auto of = [&](Fruit fruit) { return measurement_at(experiment, fruit); };
-    EXPECT_EQ(of(Fruit::apple).cost.one_thread.value().rounds.size(), 3U);
-    EXPECT_FALSE(of(Fruit::none).cost.one_thread);
-    EXPECT_TRUE(of(Fruit::pear).cost.one_thread);
-    EXPECT_FALSE(of(Fruit::pear).cost.all_threads);
-    EXPECT_FALSE(of(Fruit::pear).cost.peak_bytes);
-    EXPECT_EQ(of(Fruit::none).cost.stored_bytes, 4.0);
-    EXPECT_TRUE(std::isnan(median_seconds(of(Fruit::none))));
-    EXPECT_FALSE(of(Fruit::none).is_pareto_optimal);  // It has no time.
-    EXPECT_TRUE(of(Fruit::apple).is_pareto_optimal);
-    EXPECT_EQ(of(Fruit::pear).choices, prepared.methods[2].choices);
-    EXPECT_EQ(of(Fruit::pear).error.rms, 2.0);
+    const auto& all = experiment.measurements;
+    EXPECT_EQ(all[0].cost.one_thread.value().rounds.size(), 3U);
+    EXPECT_FALSE(all[1].cost.one_thread);
+    EXPECT_TRUE(all[2].cost.one_thread);
+    EXPECT_FALSE(all[2].cost.all_threads);
+    EXPECT_FALSE(all[2].cost.peak_bytes);
+    EXPECT_EQ(all[1].cost.stored_bytes, 4.0);
+    EXPECT_TRUE(std::isnan(median_seconds(all[1])));
+    EXPECT_FALSE(all[1].is_pareto_optimal);  // It has no time.
+    EXPECT_TRUE(all[0].is_pareto_optimal);
+    EXPECT_EQ(all[2].choices, prepared.methods[2].choices);
+    EXPECT_EQ(all[2].error.rms, 2.0);
 }
 
 TEST(Measured, RunsNoRepetitionsWithoutTiming) {
@@ -138,36 +136,48 @@ TEST(Measured, AddsTheNoteOfTheErrorAndFinishes) {
     EXPECT_EQ(measured(prepared, untimed()).finding, "A note. And a finding.");
 }
 
-TEST(MeasurementAt, RefusesMethodsThatWereLeftOut) {
-    EXPECT_THROW(static_cast<void>(measurement_at(Experiment{}, Fruit::pear)), std::out_of_range);
+/// An experiment with a method per RMS error, in pairs of float64 and float32.
+Experiment with_errors(const std::vector<double>& errors) {
+    Experiment experiment{.error_unit = "degrees"};
+    for (const double rms : errors) {
+        const std::size_t i = experiment.measurements.size();
+        const std::string arithmetic = i % 2 == 0 ? "float64" : "float32";
+        Measurement& one = experiment.measurements.emplace_back();
+        one.method = fmt::format("{}, {}", i / 2, arithmetic);
+        one.choices = {{"kernel", std::to_string(i / 2)}, {"arithmetic", arithmetic}};
+        one.error = {.count = 1, .rms = rms, .max = 2.0 * rms};
+    }
+    return experiment;
 }
 
-TEST(Truest, HasTheSmallestDefinedError) {
-    Experiment experiment;
-    EXPECT_EQ(most_accurate(experiment), nullptr);
-    for (const double rms : {3.0, 1.0, 2.0}) {
-        experiment.measurements.emplace_back();
-        experiment.measurements.back().error.count = 1;
-        experiment.measurements.back().error.rms = rms;
-    }
-    EXPECT_EQ(most_accurate(experiment), &experiment.measurements[1]);
-    experiment.measurements[1].error.undefined = 1;
-    EXPECT_EQ(most_accurate(experiment), &experiment.measurements[2]);
-}
-
-TEST(ArithmeticFinding, ComparesPairsOfTheSameMethod) {
-    Experiment experiment;
-    for (const double rms : {1.0, 1.25, 2.0, 1.5}) {
-        experiment.measurements.emplace_back();
-        experiment.measurements.back().error.rms = rms;
-    }
-    EXPECT_EQ(arithmetic_finding(experiment, "kernels"),
-              "float32 changes no RMS error by more than 0.5 degrees.");
+TEST(Finding, HasTheLeastAndTheLargestErrorAndTheEffectOfFloat) {
+    Experiment experiment = with_errors({1.0, 1.25, 2.0, 1.5});
+    const std::string extremes =
+        "'0, float64' has the smallest error, 1 degrees RMS, 2 at most; '1, float64' has the "
+        "largest, 2 RMS, 4 at most. float32 changes no RMS error by more than 0.5 degrees";
+    EXPECT_EQ(finding_of(experiment, {}), extremes + ".");
     for (std::size_t i = 0; i < 4; ++i)
         experiment.measurements[i].cost.one_thread = Timing{{i % 2 == 0 ? 2.0 : 1.0}};
-    EXPECT_EQ(arithmetic_finding(experiment, "kernels"),
-              "float32 changes no RMS error by more than 0.5 degrees and takes 0.50 times as long "
-              "(median of the kernels).");
+    EXPECT_EQ(finding_of(experiment, {}), extremes + " and takes 0.50 times as long (median).");
+}
+
+TEST(Finding, ComparesTheNamedMethodsWithTheirTimes) {
+    Experiment experiment = with_errors({1.0, 1.25, 2.0, 1.5});
+    EXPECT_EQ(
+        finding_of(experiment, {"1, float64", "0, float32"}),
+        "'0, float32' has the smallest error, 1.25 degrees RMS, 2.5 at most; '1, float64' 2.");
+    experiment.measurements[2].cost.all_threads = Timing{{0.5}};
+    EXPECT_EQ(finding_of(experiment, {"1, float64", "0, float32"}),
+              "'0, float32' has the smallest error, 1.25 degrees RMS, 2.5 at most; '1, float64' 2. "
+              "Median times: '1, float64' 500 ms.");
+}
+
+TEST(Finding, LeavesOutMethodsWithUndefinedResults) {
+    Experiment experiment = with_errors({1.0, 1.25});
+    experiment.measurements[0].error.undefined = 1;
+    EXPECT_EQ(finding_of(experiment, {}).find("'0, float32' has the smallest"), 0U);
+    experiment.measurements[1].error.undefined = 1;
+    EXPECT_EQ(finding_of(experiment, {}).find("No method has a defined error everywhere."), 0U);
 }
 
 TEST(FittedCurve, HasTheSlopeOfItsPoints) {
@@ -344,19 +354,6 @@ TEST(Subjects, HaveTheExperimentsOfTheirName) {
         EXPECT_TRUE(run_experiments(std::array{subject}, options).empty());
         EXPECT_GE(all, 2U) << enum_name(subject);
     }
-}
-
-TEST(Subjects, HaveWordsThatLeadBackToThem) {
-    for (const Subject subject : subjects_with_experiments())
-        EXPECT_EQ(subject_from(enum_name(subject)), subject);
-    EXPECT_STREQ(enum_name(Subject::stability), "stability");
-    EXPECT_THROW(subject_from("colour"), InvalidInput);
-}
-
-TEST(Subjects, ThatDrawAreKnown) {
-    EXPECT_TRUE(uses_opengl(Subject::shading));
-    EXPECT_TRUE(uses_opengl(Subject::tangents));
-    EXPECT_FALSE(uses_opengl(Subject::bump));
 }
 
 }  // namespace

@@ -51,33 +51,6 @@ TEST(AnalyticMesh, FacesItsNormalsExceptAtFolds) {
     }
 }
 
-TEST(AnalyticMesh, NormalsAreThoseOfTheSurfaceItself) {
-    // The expected normals come from implicit equations, which the meshes do not use.
-    const auto gradient = [](AnalyticSurface surface, const glm::dvec3& p) {
-        switch (surface) {
-            case AnalyticSurface::sphere:
-                return p;
-            case AnalyticSurface::ellipsoid:
-                return p / glm::dvec3(1.0, 0.49, 0.16);
-            case AnalyticSurface::torus: {
-                const double around = std::hypot(p.x, p.y);
-                return p - glm::dvec3(p.x, p.y, 0.0) / around;
-            }
-            default:  // The saddle.
-                return glm::dvec3(-p.x, p.y, 1.0);
-        }
-    };
-    for (const AnalyticSurface surface : {AnalyticSurface::sphere, AnalyticSurface::torus,
-                                          AnalyticSurface::ellipsoid, AnalyticSurface::saddle}) {
-        const AnalyticMesh reference = analytic_mesh(surface, Triangulation::jittered, 24, 5);
-        for (std::size_t v = 0; v < reference.normals.size(); ++v) {
-            const glm::dvec3 expected = gradient(surface, glm::dvec3(reference.mesh.positions[v]));
-            // Positions are rounded to float, on curves of radius 0.16 and more.
-            EXPECT_LE(degrees_between(reference.normals[v], expected), 1e-4);
-        }
-    }
-}
-
 TEST(AnalyticMesh, InnerVerticesAreSurroundedByTriangles) {
     for (const AnalyticSurface surface : all_surfaces) {
         const AnalyticMesh reference = analytic_mesh(surface, Triangulation::regular, 8, 1);
@@ -100,65 +73,6 @@ TEST(AnalyticMesh, InnerVerticesAreSurroundedByTriangles) {
     }
     EXPECT_THROW(analytic_mesh(AnalyticSurface::sphere, Triangulation::regular, 3, 1),
                  InvalidInput);
-}
-
-/// The largest angles in degrees between the direction of u of a triangle or its normal and the
-/// reference at its center, and the number of triangles with the wrong handedness.
-struct TextureErrors {
-    double tangent = 0.0;
-    double normal = 0.0;
-    std::size_t wrong_hands = 0;
-};
-
-TextureErrors texture_errors(const TexturedMesh& reference) {
-    TextureErrors errors;
-    for (const glm::uvec3& t : reference.mesh.triangles) {
-        const auto edge = [&](std::uint32_t to) {
-            return glm::dvec3(reference.mesh.positions[to]) -
-                   glm::dvec3(reference.mesh.positions[t.x]);
-        };
-        const auto step = [&](std::uint32_t to) {
-            return glm::dvec2(reference.mesh.texcoords[to]) -
-                   glm::dvec2(reference.mesh.texcoords[t.x]);
-        };
-        const glm::dvec3 e1 = edge(t.y), e2 = edge(t.z);
-        const glm::dvec2 d1 = step(t.y), d2 = step(t.z);
-        const double area = d1.x * d2.y - d1.y * d2.x;
-        const SurfaceFrame frame = reference.frame_at(
-            (reference.parameters[t.x] + reference.parameters[t.y] + reference.parameters[t.z]) /
-            3.0);
-        const glm::dvec3 along_u = (e1 * d2.y - e2 * d1.y) / area;
-        const glm::dvec3 up = (e1 * d2.x - e2 * d1.x) / area;
-        errors.tangent = std::max(errors.tangent, degrees_between(along_u, frame.tangent));
-        errors.normal = std::max(errors.normal, degrees_between(glm::cross(e1, e2), frame.normal));
-        EXPECT_NEAR(glm::dot(frame.tangent, frame.normal), 0.0, 1e-14);
-        EXPECT_NEAR(glm::length(frame.tangent), 1.0, 1e-14);
-        const double hand = glm::dot(glm::cross(frame.normal, frame.tangent), up);
-        errors.wrong_hands += hand * frame.handedness > 0.0 ? 0U : 1U;
-    }
-    return errors;
-}
-
-TEST(TexturedMesh, FramesAreTheLimitOfItsTrianglesOwn) {
-    for (const AnalyticSurface surface : all_surfaces) {
-        for (const TextureLayout layout :
-             {TextureLayout::upright, TextureLayout::sheared, TextureLayout::mirrored}) {
-            const auto at = [&](int cells) {
-                const TexturedMesh reference =
-                    textured_mesh(surface, Triangulation::regular, layout, cells, 3);
-                validate(reference.mesh);
-                return texture_errors(reference);
-            };
-            const TextureErrors coarse = at(32);
-            const TextureErrors fine = at(128);
-            EXPECT_EQ(coarse.wrong_hands + fine.wrong_hands, 0U);
-            EXPECT_LE(coarse.tangent, 12.0);
-            // The edges of a triangle are chords, so four times finer meshes have errors at least
-            // four times smaller. With a wrong surface or layout, the errors would stay.
-            EXPECT_LE(fine.tangent, coarse.tangent / 3.5) << static_cast<int>(surface);
-            EXPECT_LE(fine.normal, coarse.normal / 3.5) << static_cast<int>(surface);
-        }
-    }
 }
 
 TEST(TexturedMesh, HasASeamAndAMirroredFold) {

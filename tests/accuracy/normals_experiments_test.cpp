@@ -2,7 +2,6 @@
 // Errors of normals that are rotated by known angles, and the results of the experiments.
 #include "experiment_parts.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -65,7 +64,7 @@ TEST(NormalMethods, AreEightWeightingsInEachArithmetic) {
     const auto methods = normal_methods(std::array{Arithmetic::float64, Arithmetic::float32});
     std::set<std::string> names;
     for (const NormalMethod& method : methods)
-        names.insert(method.name());
+        names.insert(method.name);
     EXPECT_EQ(methods.size(), 16U);
     EXPECT_EQ(names.size(), 16U);
     EXPECT_TRUE(names.contains("area-angle, float32"));
@@ -79,15 +78,15 @@ TEST(NormalMethods, AgreeOnAPlaneAndDifferOnASurface) {
         analytic_mesh(AnalyticSurface::ellipsoid, Triangulation::jittered, 16, 1);
     std::set<double> errors;
     for (const NormalMethod& method : normal_methods(std::array{Arithmetic::float64})) {
-        for (const glm::vec3& normal : method.normals(plane))
-            EXPECT_EQ(normal, glm::vec3(0.0F, 0.0F, 1.0F)) << method.weighting;
-        errors.insert(normal_errors(method.normals(ground_truth.mesh), ground_truth).rms);
+        for (const glm::vec3& normal : method.compute(plane))
+            EXPECT_EQ(normal, glm::vec3(0.0F, 0.0F, 1.0F)) << method.name;
+        errors.insert(normal_errors(method.compute(ground_truth.mesh), ground_truth).rms);
     }
     EXPECT_EQ(errors.size(), 7U);  // "auto" equals "max" here.
 }
 
 TEST(FanErrors, AreThoseOfTheVertexInTheMiddle) {
-    NormalMethod leaning{"leaning", Arithmetic::float64, {}, [](const Mesh& mesh) {
+    NormalMethod leaning{"leaning", {}, [](const Mesh& mesh) {
                              std::vector<glm::vec3> normals(mesh.positions.size(),
                                                             glm::vec3(1.0F, 0.0F, 0.0F));
                              normals.front() = glm::vec3(0.0F, 3.0F, 4.0F);
@@ -96,67 +95,6 @@ TEST(FanErrors, AreThoseOfTheVertexInTheMiddle) {
     const ErrorStats errors = fan_errors(leaning, 5, 10);
     EXPECT_EQ(errors.count, 10U);
     EXPECT_NEAR(errors.rms, std::atan(0.75) * 180.0 / std::numbers::pi, 1e-5);
-}
-
-using testing::HasSubstr;
-
-/// The experiments, run once per process.
-const std::vector<Experiment>& quick_experiments() {
-    static const std::vector<Experiment> all = run_quick(Subject::normals);
-    return all;
-}
-
-const Experiment& quick(const std::string& title) {
-    return titled(quick_experiments(), title);
-}
-
-TEST(NormalsExperiments, AreComplete) {
-    expect_whole(quick_experiments(), Subject::normals);
-}
-
-TEST(NormalsExperiments, HaveTheErrorsOfThePage) {
-    const Experiment torus = quick("Normals: torus, jittered");
-    EXPECT_EQ(torus.id, "normals/torus-jittered");
-    EXPECT_EQ(torus.measurements.size(), 16U);
-    EXPECT_NEAR(measurement_of(torus, "max, float64").error.rms, 0.453, 5e-4);
-    EXPECT_NEAR(measurement_of(torus, "max, float64").error.max, 2.027, 5e-4);
-    EXPECT_NEAR(measurement_of(torus, "area, float64").error.rms, 1.279, 5e-4);
-    EXPECT_EQ(torus.items, 2.0 * 64 * 64);
-    EXPECT_THAT(torus.finding,
-                HasSubstr("max has the smallest error, 0.453 degrees RMS; area has the "
-                          "largest"));
-    const Experiment folded = quick("Normals: cubic, folded");
-    EXPECT_NEAR(measurement_of(folded, "auto, float64").error.rms, 0.654, 5e-4);
-    EXPECT_NEAR(measurement_of(folded, "max, float64").error.max, 180.0, 5e-2);
-}
-
-TEST(NormalsExperiments, FloatContributionsHaveNegligibleError) {
-    for (const Experiment& experiment : quick_experiments()) {
-        if (experiment.id == "normals/fans") continue;
-        for (const char* weighting : {"uniform", "area", "max"}) {
-            const double in_double =
-                measurement_of(experiment, weighting + std::string(", float64")).error.rms;
-            const double in_float =
-                measurement_of(experiment, weighting + std::string(", float32")).error.rms;
-            EXPECT_NEAR(in_float, in_double, 1e-3) << experiment.id << " " << weighting;
-        }
-    }
-}
-
-TEST(NormalsExperiments, ErrorsFallAtTheOrderOfTheory) {
-    std::size_t checked = 0;
-    for (const Experiment& experiment : quick_experiments()) {
-        for (const Chart& chart : experiment.charts) {
-            for (const Curve& curve : chart.curves) {
-                if (!curve.expected_order) continue;
-                // The fit includes coarse cells, at which the first term does not dominate yet.
-                EXPECT_NEAR(curve.order.value(), *curve.expected_order, 0.35)
-                    << experiment.id << " " << curve.method;
-                ++checked;
-            }
-        }
-    }
-    EXPECT_GE(checked, 28U);
 }
 
 }  // namespace

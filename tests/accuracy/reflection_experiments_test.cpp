@@ -84,28 +84,6 @@ TEST(RoughMirror, FlattensGradientsByTheClosedForm) {
     EXPECT_LT(left_of_slope(0.9), 0.8) << "rough enough to tell";
 }
 
-TEST(CubeMapSize, LargerMapsErrLessUntilTexelsAreFinerThanPixels) {
-    if (!GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
-    const Experiment experiment = test::run_one("shading/cube-map-size");
-    ASSERT_EQ(experiment.measurements.size(), 5U);
-    const std::vector<CurvePoint>& by_size = experiment.charts.front().curves.front().points;
-    ASSERT_EQ(by_size.size(), 5U);
-    EXPECT_EQ(by_size.front().x, 16.0);
-    EXPECT_EQ(by_size.back().x, 256.0);
-    EXPECT_LT(by_size[1].error, 0.65 * by_size[0].error);
-    EXPECT_LT(by_size[2].error, 0.6 * by_size[1].error);
-    EXPECT_LT(by_size[3].error, 0.9 * by_size[2].error);
-    // The remaining error is that of one sample per pixel, at any size.
-    EXPECT_NEAR(by_size[4].error, by_size[3].error, 0.1 * by_size[3].error);
-    for (std::size_t i = 0; i < by_size.size(); ++i) {
-        const Measurement& one = experiment.measurements[i];
-        EXPECT_EQ(one.error.rms, by_size[i].error);
-        // Doubling the side quadruples the texels; 6 faces of 256 texels of 8 bytes, and a third
-        // more.
-        EXPECT_NEAR(one.cost.stored_bytes, 16384.0 * std::pow(4.0, static_cast<double>(i)), 1e-6);
-    }
-}
-
 TEST(CubeMapSize, WithMoreSamplesAPixelTheLargestMapsDiffer) {
     const GlDevice device;
     if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
@@ -127,46 +105,6 @@ TEST(CubeMapSize, WithMoreSamplesAPixelTheLargestMapsDiffer) {
               10.0 * of_large);
     EXPECT_GT(error_with([](const glm::dvec3& d) { return 0.9 * waves_and_lights(d); }, 256),
               4.0 * of_large);
-}
-
-double error_at(const Curve& curve, double roughness) {
-    for (const CurvePoint& point : curve.points) {
-        if (point.x == roughness) return point.error;
-    }
-    throw std::runtime_error("no such roughness");
-}
-
-double sum_of_errors(const Curve& curve) {
-    double sum = 0.0;
-    for (const CurvePoint& point : curve.points)
-        sum += point.error;
-    return sum;
-}
-
-TEST_LABELS(not_sanitized);
-TEST(GlossyLevels, MoreLevelsHaveSmallerErrors) {
-    if (!GlDevice().is_available()) GTEST_SKIP() << "no OpenGL";
-    const Experiment experiment = test::run_one("shading/glossy-levels");
-    ASSERT_EQ(experiment.measurements.size(), 3U);
-    const double sharp = test::measurement_of(experiment, "not blurred").error.rms;
-    for (const char* levels : {"5 levels, 128 texels", "6 levels, 256 texels"})
-        EXPECT_LT(test::measurement_of(experiment, levels).error.rms, 0.3 * sharp) << levels;
-    const Chart& chart = experiment.charts.front();
-    const Curve& none = test::curve_of(chart, "not blurred");
-    const Curve& five = test::curve_of(chart, "5 levels, 128 texels");
-    const Curve& six = test::curve_of(chart, "6 levels, 256 texels");
-    EXPECT_LT(sum_of_errors(six), 0.95 * sum_of_errors(five));
-    // Of six levels one has roughness 1/5, of five one has 1/2. No levels are mixed there; between
-    // them two are, of which the rougher one is far too rough.
-    EXPECT_LT(error_at(six, 0.2), 0.012);
-    EXPECT_LT(error_at(five, 0.5), 0.012);
-    EXPECT_LT(error_at(six, 0.2), 0.4 * error_at(five, 0.2));
-    EXPECT_LT(error_at(five, 0.5), 0.7 * error_at(six, 0.5));
-    // The last level of both has roughness 1, which is far from a perfect mirror.
-    EXPECT_NEAR(error_at(six, 1.0), error_at(five, 1.0), 1e-3);
-    EXPECT_GT(error_at(none, 1.0), 10.0 * error_at(six, 1.0));
-    for (std::size_t i = 1; i < none.points.size(); ++i)
-        EXPECT_GT(none.points[i].error, none.points[i - 1].error) << none.points[i].x;
 }
 
 TEST_LABELS(not_sanitized);

@@ -94,16 +94,6 @@ TEST(RenderedMethods, AreTimedInTurnsInSeconds) {
     }
 }
 
-TEST(RenderedMethods, ReportTimesOnlyIfAllWereTimed) {
-    Measurement stored;
-    stored.cost.one_thread = Timing{{1.0e-3, 1.2e-3, 5.0e-3}};
-    Measurement derived;
-    derived.cost.all_threads = Timing{{3.4e-3}};
-    EXPECT_EQ(frame_times({{"stored", stored}, {"derived", derived}}),
-              " Median frame times: 1.2 ms (stored), 3.4 ms (derived).");
-    EXPECT_EQ(frame_times({{"stored", stored}, {"derived", Measurement{}}}), "");
-}
-
 TEST(RenderedMethods, ReportMissingOpenGL) {
     const test::ScopedVariable osmesa("RELIEF_OSMESA_LIBRARY", "libnone.so");
     const PlanOptions plan_options{true, SharedInput<GlDevice>([] {

@@ -81,18 +81,6 @@ TEST(FormulaError, SeesAWrongFormula) {
     EXPECT_EQ(formula_error(undefined, exact_reflectances(1.5, cosines)).undefined, 901U);
 }
 
-TEST(FresnelExperiments, RankTheFormulas) {
-    const Experiment glass = test::run_one("shading/fresnel-glass");
-    EXPECT_LT(test::measurement_of(glass, "Schlick").error.rms,
-              0.1 * test::measurement_of(glass, "constant").error.rms);
-    EXPECT_LT(test::measurement_of(glass, "Fresnel, float32").error.rms, 1e-6);
-    EXPECT_NE(glass.finding.find("0.013 (RMS; at most 0.036)"), std::string::npos) << glass.finding;
-    const Experiment metal = test::run_one("shading/fresnel-metal");
-    EXPECT_GT(test::measurement_of(metal, "Schlick").error.max,
-              3.0 * test::measurement_of(metal, "Schlick, right at 82 degrees").error.max);
-    EXPECT_FALSE(glass.measurements.front().cost.one_thread);
-}
-
 TEST(NormalSamples, AreShortestInTheMiddle) {
     // The mean of three unit vectors that are 40 degrees apart.
     const NormalSamples samples(40.0, 97);
@@ -106,18 +94,6 @@ TEST(NormalSamples, AreShortestInTheMiddle) {
     EXPECT_NEAR(shortest, expected, 1e-4);
     EXPECT_NEAR(longest, 1.0, 0.01);
     EXPECT_LE(longest, 1.0);
-}
-
-TEST(UnitNormalMethods, ErrByTheSquareAndTheFourthPowerOfTheAngle) {
-    const Experiment experiment = test::run_one("shading/unit-normal");
-    const std::vector<Curve>& curves = experiment.charts.front().curves;
-    ASSERT_EQ(curves.size(), 4U);
-    EXPECT_NEAR(curves[0].order.value(), curves[0].expected_order.value(), 0.15);
-    EXPECT_NEAR(curves[1].order.value(), curves[1].expected_order.value(), 0.3);
-    EXPECT_GT(experiment.measurements[0].error.max, 0.1);
-    EXPECT_LT(experiment.measurements[1].error.rms, 0.15 * experiment.measurements[0].error.rms);
-    EXPECT_LT(experiment.measurements[2].error.max, 1e-5);
-    EXPECT_LT(experiment.measurements[3].error.max, 1e-7);
 }
 
 /// Diffuse light 0.55 and a highlight 0.45 of shininess 40 [Blinn 1977], by powers and angles. The
@@ -154,7 +130,6 @@ TEST(UnitNormalReference, IsAFormulaOfAngles) {
             least = std::min(least, ground_truth[i]);
             most = std::max(most, ground_truth[i]);
         }
-        EXPECT_EQ(samples.brightest(), most);
         if (degrees > 1.0) {
             EXPECT_LT(least, 0.5 * most) << "places of all kinds";
         }

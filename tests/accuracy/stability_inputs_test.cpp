@@ -58,35 +58,6 @@ TEST(HardTriangles, HaveTheNamedDefects) {
     EXPECT_GT(glm::length(middle - a), 0.4F * glm::length(b - a));
 }
 
-TEST(NormalsBesideHardTriangles, HoldByReliefAndBreakByPlainCode) {
-    const Experiment experiment = test::run_one("stability/normals-hard-triangles");
-    ASSERT_EQ(experiment.charts.size(), hard_triangle_names.size());
-    for (const Chart& chart : experiment.charts) {
-        for (const Curve& curve : chart.curves) {
-            SCOPED_TRACE(chart.id + ", " + curve.method);
-            ASSERT_EQ(curve.points.size(), 4U);
-            const bool is_plain = curve.method.starts_with("plain");
-            // Triangles without area or position contribute nothing: the errors do not change.
-            const bool has_no_vote =
-                chart.id == "collapsed" || chart.id == "coinciding" || chart.id == "nowhere";
-            if (!is_plain && has_no_vote) {
-                for (const CurvePoint& point : curve.points)
-                    EXPECT_EQ(point.error, curve.points.front().error);
-                EXPECT_FALSE(curve.breaks_at);
-            }
-            // One corner that is not a number makes the normals of textbook code undefined around
-            // it.
-            if (is_plain && chart.id == "nowhere") {
-                EXPECT_EQ(curve.breaks_at.value_or(0.0), 1.0);
-            }
-        }
-    }
-    // A collapsed triangle has no angles, and the arc cosine of 0 / 0 is undefined as well.
-    EXPECT_EQ(test::curve_of(experiment.charts[0], "plain angle, float32").breaks_at.value_or(0.0),
-              1.0);
-    EXPECT_FALSE(test::curve_of(experiment.charts[0], "plain area, float32").breaks_at);
-}
-
 __extension__ using Wide = __int128;
 
 /// Coordinates in units of 2^-62, in which floats of 1e-11 and more are integers.

@@ -22,7 +22,7 @@ const std::vector<NormalMethod>& weightings() {
 std::string header() {
     std::vector<std::string> names;
     for (const NormalMethod& method : weightings())
-        names.push_back(method.weighting);
+        names.push_back(method.choices.front().second);
     return table_header(names);
 }
 
@@ -34,7 +34,7 @@ std::string surface_table(const char* title, Triangulation triangulation) {
         std::vector<double> ranks;
         std::vector<std::string> entries;
         for (const NormalMethod& method : weightings()) {
-            const ErrorStats error = normal_errors(method.normals(reference.mesh), reference);
+            const ErrorStats error = normal_errors(method.compute(reference.mesh), reference);
             ranks.push_back(error.rms);
             entries.push_back(in_digits(error.rms) + " / " + in_digits(error.max));
         }

@@ -83,7 +83,7 @@ tools::AccuracyReport sample_report() {
     report.relief = "0.1.0";
     report.command = "relief-accuracy run storage";
     report.machine = {"A processor", 2, 1000000, "A system", "A compiler", "Release", "A renderer"};
-    report.settings = {.quick = true, .timed = true, .repeats = 3, .threads = 2};
+    report.settings = {.quick = true, .timed = true, .repeats = 3, .passes = 2, .threads = 2};
     report.settings.other_programs = tools::OtherPrograms{1.7, 2};
     report.experiments = {one};
     return report;

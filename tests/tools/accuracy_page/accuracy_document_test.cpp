@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks the errors in docs/accuracy.md against the same experiments. Shading is excluded, because
-// its errors depend on the driver.
+// Checks the errors in docs/accuracy.md against the stored figures of the experiments. Shading is
+// excluded, because its errors depend on the driver.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,16 +13,13 @@
 #include <string>
 #include <vector>
 
-#include "accuracy_report.h"
+#include "accuracy/figure_table.h"
 #include "plots.h"
-#include "relief/accuracy/experiment.h"
 #include "support/labels.h"
 #include "support/shared_data.h"
 #include "tools/workplace.h"
 
 namespace relief::tools {
-using namespace relief::accuracy;
-
 namespace {
 
 FILE_LABELS(docs);
@@ -155,29 +152,29 @@ std::size_t compare_with_the_page(const Page& page, const nlohmann::ordered_json
     return compared;
 }
 
-class AccuracyDocumentOf : public testing::TestWithParam<Subject> {};
-
-TEST_P(AccuracyDocumentOf, ASubjectHoldsTheErrorsThatAreMeasured) {
+TEST(AccuracyDocument, HoldsTheStoredFiguresOfTheExperiments) {
     const Page page = numbers_of_the_page();
-    RunOptions options;
-    options.is_quick = true;
-    options.is_timed = false;
-    AccuracyReport report;
-    report.experiments = run_experiments(std::array{GetParam()}, options);
-    const auto json = json_of(report, false);
     std::size_t compared = 0;
-    for (const auto& experiment : json["experiments"])
-        compared += compare_with_the_page(page, experiment);
-    EXPECT_GE(compared, 4U) << "the page's experiment was not found";
+    for (const auto& [id, entry] : test::FigureTable().experiments) {
+        nlohmann::ordered_json experiment = {
+            {"id", id}, {"input", entry.input}, {"measurements", nlohmann::json::array()}};
+        for (const auto& [method, values] : entry.figures) {
+            if (values.size() != 7) continue;  // It is a curve.
+            experiment["measurements"].push_back({{"method", method},
+                                                  {"error",
+                                                   {{"undefined", values[1]},
+                                                    {"rms", values[2]},
+                                                    {"mean", values[3]},
+                                                    {"p99", values[4]},
+                                                    {"max", values[5]}}},
+                                                  {"cost", {{"stored_bytes", values[6]}}}});
+        }
+        const std::size_t methods = compare_with_the_page(page, experiment);
+        EXPECT_TRUE(methods == 0 || methods >= 4) << id;
+        compared += methods > 0 ? 1 : 0;
+    }
+    EXPECT_EQ(compared, 8U) << "an experiment of the page was not found";
 }
-
-INSTANTIATE_TEST_SUITE_P(All, AccuracyDocumentOf,
-                         testing::Values(Subject::normals, Subject::tangents, Subject::bump,
-                                         Subject::storage, Subject::compression, Subject::bake,
-                                         Subject::decimation, Subject::stability),
-                         [](const testing::TestParamInfo<Subject>& tested) {
-                             return std::string(enum_name(tested.param));
-                         });
 
 /// Returns the commands with a recommendation in the page.
 std::vector<std::string> commands_of_the_page() {

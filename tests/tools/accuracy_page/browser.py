@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A browser without a window, driven as by hands: WebDriver [W3C 2018] spoken to chromedriver, by the
-standard library alone. Used by report_page_test.py and scripts/dev/site.
+"""A headless browser, driven by WebDriver [W3C 2018] through chromedriver, with the standard
+library only. Used by report_page_test.py and scripts/dev/site.
 """
 import base64
 import json
@@ -94,33 +94,6 @@ class Browser:
         self.devtools("Emulation.setDeviceMetricsOverride", width=width, height=height,
                       deviceScaleFactor=1, mobile=is_phone)
 
-    def prefer(self, **features):
-        """Media features: prefer(color_scheme="dark")."""
-        self.devtools("Emulation.setEmulatedMedia", features=[
-            {"name": "prefers-" + name.replace("_", "-"), "value": value}
-            for name, value in features.items()])
-
-    def drag(self, *places):
-        """The mouse to the first place, down, along the others, up; with one place, only there."""
-        steps = [{"type": "pointerMove", "duration": 0, "x": round(x), "y": round(y)}
-                 for x, y in places]
-        if len(steps) > 1:
-            steps.insert(1, {"type": "pointerDown", "button": 0})
-            steps.append({"type": "pointerUp", "button": 0})
-        self._call("POST", "/actions", {"actions": [
-            {"type": "pointer", "id": "mouse", "actions": steps}]})
-
-    def move(self, x, y):
-        self.drag((x, y))
-
-    def press(self, key):
-        """A key, into whatever has the focus; WebDriver's codes for those without a letter."""
-        code = {"Tab": "\ue004", "Escape": "\ue00c", "ArrowLeft": "\ue012", "ArrowUp": "\ue013",
-                "ArrowRight": "\ue014", "ArrowDown": "\ue015", "Home": "\ue011", "End": "\ue010",
-                "Space": "\ue00d", "Enter": "\ue007"}.get(key, key)
-        self._call("POST", "/actions", {"actions": [{"type": "key", "id": "keys", "actions": [
-            {"type": "keyDown", "value": code}, {"type": "keyUp", "value": code}]}]})
-
     def log(self, kind):
         """What was written since the last call: kind is "browser" (the console) or "performance"."""
         return self._call("POST", "/se/log", {"type": kind})
@@ -131,12 +104,5 @@ class Browser:
         return [message["params"]["request"]["url"] for message in messages
                 if message["method"] == "Network.requestWillBeSent"]
 
-    def screenshot(self, file, whole=False):
-        if whole:
-            size = self.devtools("Page.getLayoutMetrics")["cssContentSize"]
-            clip = {"x": 0, "y": 0, "width": size["width"], "height": size["height"], "scale": 1}
-            shot = self.devtools("Page.captureScreenshot", captureBeyondViewport=True, clip=clip)
-            data = shot["data"]
-        else:
-            data = self._call("GET", "/screenshot")
-        file.write_bytes(base64.b64decode(data))
+    def screenshot(self, file):
+        file.write_bytes(base64.b64decode(self._call("GET", "/screenshot")))

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// The results of all experiments that do not draw with OpenGL: they are complete, fall at the order
+// of theory, and every statistic and every point of a curve is that of quick_figures.tsv.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "experiment_checks.h"
+#include "figure_table.h"
+#include "support/labels.h"
+
+namespace relief::test {
+using namespace relief::accuracy;
+
+namespace {
+
+FILE_LABELS(not_sanitized);
+
+bool is_textbook(const std::string& method) {
+    return method.starts_with("plain");
+}
+
+/// On coarse meshes a term of higher order may dominate. Then the errors fall faster than in
+/// theory, but less so on the finest meshes.
+void expect_order(const Curve& curve) {
+    const std::vector<CurvePoint> finest(curve.points.end() - 2, curve.points.end());
+    const double expected = *curve.expected_order;
+    const bool approaches =
+        *curve.order < expected && fitted_order(finest).value_or(*curve.order) > *curve.order;
+    EXPECT_TRUE(std::abs(*curve.order - expected) < 0.35 || approaches)
+        << *curve.order << ", not " << expected;
+}
+
+void expect_theory(const Experiment& experiment) {
+    for (const Chart& chart : experiment.charts) {
+        for (const Curve& curve : chart.curves) {
+            SCOPED_TRACE(experiment.id + ", " + chart.id + ": " + curve.method);
+            if (curve.expected_order && curve.order) expect_order(curve);
+            // Scale and steepness change no result of the library.
+            if (experiment.id.ends_with("-scale") || experiment.id.ends_with("-steepness")) {
+                EXPECT_TRUE(is_textbook(curve.method) || !curve.breaks_at);
+            }
+        }
+    }
+}
+
+/// Returns the figures of an experiment by method, and by "CHART: METHOD".
+FigureTable::Figures figures_of(const Experiment& experiment) {
+    FigureTable::Figures figures;
+    for (const Measurement& one : experiment.measurements) {
+        const ErrorStats& error = one.error;
+        figures[one.method] = {static_cast<double>(error.count),
+                               static_cast<double>(error.undefined),
+                               error.rms,
+                               error.mean,
+                               error.p99,
+                               error.max,
+                               one.cost.stored_bytes};
+    }
+    for (const Chart& chart : experiment.charts) {
+        for (const Curve& curve : chart.curves) {
+            for (const CurvePoint& point : curve.points)
+                figures[chart.id + ": " + curve.method].push_back(point.error);
+        }
+    }
+    return figures;
+}
+
+/// Another order of summation changes less than five digits, and rounding errors themselves.
+bool is_equal(double a, double b) {
+    return (std::isnan(a) && std::isnan(b)) || std::abs(a - b) <= 5e-5 * std::abs(b) + 1e-7;
+}
+
+class ExperimentsOf : public testing::TestWithParam<Subject> {};
+
+TEST_P(ExperimentsOf, HaveTheStoredFigures) {
+    RunOptions options = quick_untimed();
+    options.selects_experiment = [](const std::string& id) {
+        return id != "tangents/drawn" &&
+               (!id.starts_with("shading/") || id.starts_with("shading/fresnel") ||
+                id == "shading/unit-normal");
+    };
+    std::vector<Experiment> all = run_experiments(std::array{GetParam()}, options);
+    const FigureTable stored;
+    FigureTable actual = stored;
+    for (const Experiment& experiment : all) {
+        expect_theory(experiment);
+        const FigureTable::Figures figures = figures_of(experiment);
+        actual.experiments[experiment.id] = {experiment.input, figures};
+        const auto expected = stored.experiments.find(experiment.id);
+        ASSERT_NE(expected, stored.experiments.end()) << experiment.id;
+        EXPECT_EQ(expected->second.input, experiment.input);
+        EXPECT_EQ(expected->second.figures.size(), figures.size()) << experiment.id;
+        for (const auto& [method, values] : expected->second.figures) {
+            const auto found = figures.find(method);
+            EXPECT_TRUE(found != figures.end() &&
+                        std::equal(values.begin(), values.end(), found->second.begin(),
+                                   found->second.end(), is_equal))
+                << experiment.id << ": " << method;
+        }
+    }
+    if (HasFailure()) {
+        const std::filesystem::path file =
+            std::filesystem::path(testing::TempDir()) / FigureTable::name;
+        actual.write(file);
+        ADD_FAILURE() << "if the changes are right, replace tests/accuracy/" << FigureTable::name
+                      << " by " << file;
+    }
+    // Only textbook code has undefined results.
+    for (Experiment& experiment : all) {
+        std::erase_if(experiment.measurements,
+                      [](const Measurement& one) { return is_textbook(one.method); });
+    }
+    expect_whole(all, GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ExperimentsOf, testing::ValuesIn(subjects_with_experiments()),
+                         [](const testing::TestParamInfo<Subject>& tested) {
+                             return std::string(name_of(tested.param));
+                         });
+
+}  // namespace
+}  // namespace relief::test
