@@ -119,7 +119,7 @@ TEST_P(ExperimentsOf, HaveTheStoredFigures) {
 
 INSTANTIATE_TEST_SUITE_P(All, ExperimentsOf, testing::ValuesIn(subjects_with_experiments()),
                          [](const testing::TestParamInfo<Subject>& tested) {
-                             return std::string(name_of(tested.param));
+                             return std::string(enum_name(tested.param));
                          });
 
 }  // namespace
