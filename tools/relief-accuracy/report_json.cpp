@@ -58,11 +58,13 @@ constexpr auto fields<OtherPrograms> = std::tuple{Field{"processors", &OtherProg
                                                   Field{"available", &OtherPrograms::available}};
 
 template <>
-constexpr auto fields<RunSettings> = std::tuple{
-    Field{"quick", &RunSettings::quick}, Field{"timed", &RunSettings::timed},
-    Field{"repeats", &RunSettings::repeats}, OptionalField{"passes", &RunSettings::passes},
-    Field{"threads", &RunSettings::threads},
-    OptionalField{"other_programs", &RunSettings::other_programs}};
+constexpr auto fields<RunSettings> =
+    std::tuple{Field{"quick", &RunSettings::quick},
+               Field{"timed", &RunSettings::timed},
+               Field{"repeats", &RunSettings::repeats},
+               OptionalField{"passes", &RunSettings::passes},
+               Field{"threads", &RunSettings::threads},
+               OptionalField{"other_programs", &RunSettings::other_programs}};
 
 template <>
 constexpr auto fields<ErrorStats> =
