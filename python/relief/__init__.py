@@ -50,6 +50,7 @@ from ._relief import (
     heights,
     levels_of_detail,
     mean_curvatures,
+    measure_texcoords,
     normal_mip_levels,
     read_image,
     read_mesh,
@@ -73,15 +74,15 @@ if TYPE_CHECKING:
     import numpy
     import numpy.typing
 
-    from ._relief import Floats, Indices, Layer, Rays, Report, Space, States
+    from ._relief import FloatArray, Floats, Indices, Layer, Rays, Report, Space, States
 
 __all__ = [
     "BakeMismatch", "Baked", "Cancelled", "Error", "Execution", "FileError", "Finding", "GpuError", "InvalidInput",
     "Mesh", "Scene", "ToolError", "Unwrapped", "__version__", "accuracy", "bake", "blend_normals", "bump", "bump_options",
     "check_mesh", "check_normal_map", "compare_images", "compare_meshes", "compare_normals", "convert_space",
     "corner_normals", "corner_tangents", "decimate", "decode_normals", "encode_normals", "flip_green", "heights",
-    "levels_of_detail", "mean_curvatures", "normal_mip_levels", "read_image", "read_mesh", "resize_normals", "run",
-    "scale_slopes", "set_thread_limit", "slopes", "split_vertices", "subdivide", "surface_distance",
+    "levels_of_detail", "mean_curvatures", "measure_texcoords", "normal_mip_levels", "read_image", "read_mesh",
+    "resize_normals", "run", "scale_slopes", "set_thread_limit", "slopes", "split_vertices", "subdivide", "surface_distance",
     "triangle_normals", "unwrap", "vertex_normals", "vertex_tangents", "with_frames", "write_image", "write_mesh",
     "write_texture",
 ]
@@ -193,6 +194,10 @@ def unwrap(
     split_hard_degrees: float | None = None,
     split_materials: bool = False,
     keep_seams: bool = False,
+    densities: FloatArray | None = None,
+    stack: bool = False,
+    repack: bool = False,
+    fix_mirrored: bool = False,
     report: Report | None = None,
 ) -> Unwrapped:
     """Compute texture coordinates for a map of `size` (width, height), without overlapping or mirrored triangles.
@@ -200,14 +205,17 @@ def unwrap(
     The options are those of `relief-mesh unwrap`: `padding` is the least distance of charts in texels, 0 to 256; no
     two charts share a block of `align` x `align` texels; `max_stretch`, above 1, limits the ratio of a triangle's two
     scales; `split_hard_degrees` puts seams at sharper edges where they separate charts. Tangents are removed, and
-    old texture coordinates matter only with `keep_seams`. Every mesh with a triangle has a result; what is cut or
+    old texture coordinates matter only with `keep_seams` and `repack`. `densities`, float32 (m,), are the relative
+    densities of texels of the triangles. With `stack`, equal parts share texels. With `repack`, the old charts are
+    only packed anew; `fix_mirrored` reflects mirrored ones. Every mesh with a triangle has a result; what is cut or
     set aside is appended to the list `report`.
 
     Raises InvalidInput for wrong options, or if the charts do not fit into the map, and TypeError for wrong types.
     """
     return Unwrapped(**_relief.unwrap(
         mesh, size=size, padding=padding, align=align, texels_per_unit=texels_per_unit, max_stretch=max_stretch,
-        split_hard_degrees=split_hard_degrees, split_materials=split_materials, keep_seams=keep_seams, report=report))
+        split_hard_degrees=split_hard_degrees, split_materials=split_materials, keep_seams=keep_seams, densities=densities,
+        stack=stack, repack=repack, fix_mirrored=fix_mirrored, report=report))
 
 
 class ToolError(Error):

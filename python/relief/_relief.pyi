@@ -318,8 +318,13 @@ def unwrap(
     split_hard_degrees: float | None = None,
     split_materials: bool = False,
     keep_seams: bool = False,
+    densities: FloatArray | None = None,
+    stack: bool = False,
+    repack: bool = False,
+    fix_mirrored: bool = False,
     report: Report | None = None,
 ) -> dict[str, Any]: ...
+def measure_texcoords(mesh: Mesh, size: tuple[int, int], *, report: Report | None = None) -> dict[str, Any]: ...
 def bake(
     high: Mesh | Sequence[Mesh],
     low: Mesh,

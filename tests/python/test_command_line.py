@@ -169,6 +169,36 @@ class Unwrapping(CommandLineCase):
         mesh = relief.read_mesh(file)
         numpy.testing.assert_array_equal(mesh.positions[unwrapped.source_vertex], unwrapped.mesh.positions)
 
+    def test_densities_stacks_and_repacking(self):
+        mesh = relief.read_mesh(DATA / "urn-low.obj")
+        densities = numpy.ones(len(mesh.triangles))
+        densities[: len(densities) // 2] = 3.0
+        report = []
+        dense = relief.unwrap(mesh, size=(256, 256), densities=densities, report=report)
+        self.assertGreater(dense.stats["max_density"], 1.2)
+        self.assertEqual(report[0]["kind"], "converted densities")
+        with self.assertRaisesRegex(relief.InvalidInput, "densit"):
+            relief.unwrap(mesh, densities=numpy.ones(3, "float32"))
+        twice = relief.Mesh(numpy.concatenate([mesh.positions, mesh.positions + numpy.float32(8)]),
+                            numpy.concatenate([mesh.triangles, mesh.triangles + numpy.uint32(len(mesh.positions))]))
+        self.assertEqual(relief.unwrap(twice, size=(256, 256), stack=True).stats["stacked_parts"], 1)
+        out = self.folder / "out.obj"
+        report = relief.run("relief-mesh", "unwrap", DATA / "urn-low.obj", out, "--size", "256", "--repack", report=True)
+        self.assertEqual(relief.unwrap(mesh, size=(256, 256), repack=True).stats, report["atlas"])
+
+    def test_measured_texcoords(self):
+        file = DATA / "urn-low.obj"
+        (expected,) = self.run_tool("relief-mesh", "check", file, "--map-size", "256", "--json")["files"][0]["texcoords"]
+        mesh = relief.read_mesh(file)
+        quality = relief.measure_texcoords(mesh, (256, 256))
+        self.assertEqual(quality["charts"].shape, (len(mesh.triangles),))
+        self.assertEqual(quality["atlas"].pop("stacked_parts"), 0)
+        expected["atlas"].pop("stacked_parts", None)
+        self.assertEqual({name: expected[name] for name in quality if name != "charts"},
+                         {name: quality[name] for name in quality if name != "charts"})
+        with self.assertRaisesRegex(relief.InvalidInput, "no texture coordinates"):
+            relief.measure_texcoords(relief.Mesh(mesh.positions, mesh.triangles), (256, 256))
+
     def test_triangles_that_are_set_aside(self):
         positions = numpy.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (2, 0, 0)])
         report = []
