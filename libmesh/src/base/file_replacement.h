@@ -103,7 +103,9 @@ class SignalDelay {
     SignalDelay& operator=(const SignalDelay&) = delete;
 
   private:
+#if !defined(_WIN32)
     sigset_t before_;
+#endif
 };
 
 /// Makes SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGXCPU remove all temporary files before they end

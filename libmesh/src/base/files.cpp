@@ -5,8 +5,16 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#if defined(_WIN32)
+#ifndef NOMINMAX
+#define NOMINMAX
+#endif
+#include <io.h>
+#include <windows.h>
+#else
 #include <sys/stat.h>
 #include <unistd.h>
+#endif
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
@@ -23,6 +31,58 @@
 
 namespace relief::detail {
 namespace {
+
+#if defined(_WIN32)
+int open_to_read(const std::filesystem::path& file) {
+    return ::_wopen(file.c_str(), _O_RDONLY | _O_BINARY | _O_NOINHERIT);
+}
+
+void close_descriptor(int descriptor) {
+    ::_close(descriptor);
+}
+
+std::uint64_t size_of(int descriptor) {
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(::_filelengthi64(descriptor), 0));
+}
+
+/// Like read_at() below.
+std::int64_t read_at(int descriptor, std::span<std::byte> to, std::uint64_t offset) {
+    OVERLAPPED at{};
+    at.Offset = static_cast<DWORD>(offset);
+    at.OffsetHigh = static_cast<DWORD>(offset >> 32);
+    constexpr std::size_t max_size = std::size_t{1} << 30;
+    DWORD got = 0;
+    const auto handle = reinterpret_cast<HANDLE>(::_get_osfhandle(descriptor));
+    const auto size = static_cast<DWORD>(std::min(to.size(), max_size));
+    if (::ReadFile(handle, to.data(), size, &got, &at) != 0) return got;
+    if (::GetLastError() == ERROR_HANDLE_EOF) return 0;
+    errno = EIO;
+    return -1;
+}
+#else
+int open_to_read(const std::filesystem::path& file) {
+    return ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+}
+
+void close_descriptor(int descriptor) {
+    ::close(descriptor);
+}
+
+std::uint64_t size_of(int descriptor) {
+    struct stat facts {};
+    return ::fstat(descriptor, &facts) == 0 ? static_cast<std::uint64_t>(facts.st_size) : 0;
+}
+
+/// Reads up to so many bytes at an offset. \return their number; 0 at the end of the file; -1 after
+/// an error, with errno
+std::int64_t read_at(int descriptor, std::span<std::byte> to, std::uint64_t offset) {
+    ssize_t got = -1;
+    do {
+        got = ::pread(descriptor, to.data(), to.size(), static_cast<off_t>(offset));
+    } while (got < 0 && errno == EINTR);
+    return got;
+}
+#endif
 
 /// Records that a file is read. \return the file to open \throws FileError if it is missing or a
 /// folder
@@ -83,21 +143,19 @@ FileContents::FileContents(const std::filesystem::path& file) {
 
 RandomAccessFile::RandomAccessFile(std::filesystem::path file) : path_(std::move(file)) {
     const std::filesystem::path opened = note_and_check(path_);
-    descriptor_ = ::open(opened.c_str(), O_RDONLY | O_CLOEXEC);
+    descriptor_ = open_to_read(opened);
     if (descriptor_ < 0)
         throw FileError(path_, fmt::format("cannot be opened: {}", std::strerror(errno)));
-    struct stat facts {};
-    if (::fstat(descriptor_, &facts) == 0) size_ = static_cast<std::uint64_t>(facts.st_size);
+    size_ = size_of(descriptor_);
 }
 
 RandomAccessFile::~RandomAccessFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
+    if (descriptor_ >= 0) close_descriptor(descriptor_);
 }
 
 void RandomAccessFile::read(std::uint64_t offset, std::span<std::byte> to) const {
     while (!to.empty()) {
-        const ssize_t got = ::pread(descriptor_, to.data(), to.size(), static_cast<off_t>(offset));
-        if (got < 0 && errno == EINTR) continue;
+        const std::int64_t got = read_at(descriptor_, to, offset);
         if (got <= 0) {
             throw FileError(path_,
                             fmt::format("could be read only up to byte {} of {}{}", offset, size_,

@@ -4,7 +4,9 @@
 /// is allocated, and large pages, which change only the time.
 #pragma once
 
+#if defined(__linux__)
 #include <sys/mman.h>
+#endif
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -35,7 +37,9 @@ inline void expect_filling(void* begin, std::size_t size) {
     const auto first = (reinterpret_cast<std::uintptr_t>(begin) + page - 1) / page * page;
     const auto end = (reinterpret_cast<std::uintptr_t>(begin) + size) / page * page;
     if (end <= first) return;
+#if defined(__linux__)
     ::madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
+#endif
 }
 
 /// Reserves memory in an empty vector that will be filled completely.

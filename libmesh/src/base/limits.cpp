@@ -4,7 +4,14 @@
 #include "relief/mesh/limits.h"
 
 #include <fmt/format.h>
+#if defined(_WIN32)
+#ifndef NOMINMAX
+#define NOMINMAX
+#endif
+#include <windows.h>
+#else
 #include <unistd.h>
+#endif
 
 #include <algorithm>
 #include <atomic>
@@ -25,9 +32,14 @@ std::atomic<std::uint64_t> pixel_limit{0};
 std::atomic<bool> permits_outside_files{false};
 
 std::uint64_t memory_of_machine() {
+    constexpr std::uint64_t unknown = std::uint64_t{1} << 33;
+#if defined(_WIN32)
+    MEMORYSTATUSEX status{};
+    status.dwLength = sizeof status;
+    return ::GlobalMemoryStatusEx(&status) != 0 ? status.ullTotalPhys : unknown;
+#else
     const long pages = ::sysconf(_SC_PHYS_PAGES);
     const long page_size = ::sysconf(_SC_PAGESIZE);
-    constexpr std::uint64_t unknown = std::uint64_t{1} << 33;
     std::uint64_t bytes = pages > 0 && page_size > 0 ? static_cast<std::uint64_t>(pages) *
                                                            static_cast<std::uint64_t>(page_size)
                                                      : unknown;
@@ -35,6 +47,7 @@ std::uint64_t memory_of_machine() {
     std::uint64_t of_group = 0;  // The file has the word "max" if there is no limit.
     if (group >> of_group) bytes = std::min(bytes, of_group);
     return bytes;
+#endif
 }
 
 double mebibytes(std::uint64_t bytes) {

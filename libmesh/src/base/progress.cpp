@@ -6,6 +6,8 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "parallel.h"
@@ -24,10 +26,25 @@ constinit thread_local bool is_in_piece = false;
 }  // namespace
 
 FileStamp stamp_of(const std::filesystem::path& file) {
+#if defined(_WIN32)
+    // The standard library does not tell the number of a file: an existing one has 1.
+    std::error_code error;
+    const auto changed = std::filesystem::last_write_time(file, error);
+    if (error) return {};
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    return {static_cast<std::int64_t>(changed.time_since_epoch().count()),
+            error ? 0 : static_cast<std::uint64_t>(size), 1};
+#else
     struct stat facts {};
     if (::stat(file.c_str(), &facts) != 0) return {};
-    return {static_cast<std::int64_t>(facts.st_mtim.tv_sec) * 1'000'000'000 + facts.st_mtim.tv_nsec,
+#if defined(__APPLE__)
+    const timespec& changed = facts.st_mtimespec;
+#else
+    const timespec& changed = facts.st_mtim;
+#endif
+    return {static_cast<std::int64_t>(changed.tv_sec) * 1'000'000'000 + changed.tv_nsec,
             static_cast<std::uint64_t>(facts.st_size), static_cast<std::uint64_t>(facts.st_ino)};
+#endif
 }
 
 Progress::State Progress::state() const {
