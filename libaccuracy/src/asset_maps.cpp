@@ -46,10 +46,6 @@ std::function<void()> work_of(const BumpMethod& method, const BumpSample& sample
     };
 }
 
-/// The expected error of a map is given as a range if its upper end is beyond this ratio, as by
-/// KernelChoice::is_range().
-constexpr double min_range = 1.5;
-
 std::string unknown_loss(const AssetOptions& options) {
     return fmt::format("the unknown loss of the file's {} compression", options.lossy_compression);
 }
@@ -93,10 +89,12 @@ std::vector<BumpMethod> methods_for(const KernelChoice& choice, const AssetOptio
 }  // namespace
 
 AssetExperiment measure_asset_heights(const BumpSample& sample, glm::ivec2 size,
-                                      const BumpOptions& bump, const AssetOptions& options) {
+                                      const BumpOptions& bump, const AssetOptions& options,
+                                      Report& report) {
     AssetExperiment asset =
         asset_experiment(Subject::bump, "bump", "Normals from heights", options);
     const KernelChoice choice = choose_kernel(sample.analyzed, bump);
+    report_blurred_noise(choice, report);
     const std::vector<BumpMethod> methods = methods_for(choice, options);
     BumpExperimentOptions how;
     how.bump = bump;
@@ -115,7 +113,7 @@ AssetExperiment measure_asset_heights(const BumpSample& sample, glm::ivec2 size,
             fmt::format("The most accurate conversion that is known for this map: {}. {}.",
                         reference.description, choice.reason);
         experiment.reference_error = reference.reference_degrees;
-        if (reference.upper_degrees > min_range * reference.reference_degrees)
+        if (reference.upper_degrees > KernelChoice::min_range * reference.reference_degrees)
             experiment.reference_error_upper = reference.upper_degrees;
     }
     experiment.input = result.is_whole ? fmt::format("{} x {} texels", size.x, size.y)

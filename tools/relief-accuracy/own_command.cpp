@@ -158,14 +158,18 @@ void add_non_finite(const Image& heights, Report& report) {
     }
 }
 
-/// Returns the findings on a height map, or none for a map that is too large for memory.
-std::vector<std::string> height_findings(const HeightMapFile& map, const AssetRequest& request) {
+/// Returns the findings on a height map. Texels of a map that is too large for memory have none.
+///
+/// \param of_choice  those of the choice of a kernel
+std::vector<std::string> height_findings(const HeightMapFile& map, const AssetRequest& request,
+                                         const Report& of_choice) {
     Report report;
     if (!map.is_streamed()) {
         if (!request.channel && map.info().channels > 1)
             add_color_findings(read_image(map.path(), ImageUse::data), report);
         add_non_finite(map.map().heights, report);
     }
+    report.merge(of_choice);
     Findings findings;
     findings.add("", report, map.info().width);
     return findings.lines();
@@ -190,9 +194,10 @@ std::vector<AssetExperiment> measure_heights(const AssetInput& input, const Asse
         description += fmt::format(", channel {}", name);
         options.height_arguments = " --channel " + name;
     }
+    Report report;
     std::vector<AssetExperiment> all = {
-        measure_asset_heights(parts.sample(survey.parts), {width, height}, bump, options)};
-    all.front().experiment.input_findings = height_findings(map, request);
+        measure_asset_heights(parts.sample(survey.parts), {width, height}, bump, options, report)};
+    all.front().experiment.input_findings = height_findings(map, request, report);
     return all;
 }
 

@@ -330,6 +330,7 @@ void choose_method(const BumpAccuracyRequest& request, const std::vector<Image>&
     if (!request.kernel) {
         accuracy.choice = choose_kernel(sample.analyzed, bump, request.destaircase, request.grain);
         report_grain(*accuracy.choice, report);
+        report_blurred_noise(*accuracy.choice, report);
         bump.kernel = accuracy.choice->kernel;
         bump.gaussian_radius = accuracy.choice->gaussian_radius;
     }
@@ -512,8 +513,9 @@ std::vector<std::string> comparison_table(const BumpExperiment& experiment) {
 std::string expectation_text(const KernelChoice& choice) {
     if (std::isnan(choice.rms_degrees)) return "unknown";
     const char* const range_reason =
-        choice.noise > 0.0 ? "; the range depends on how much detail the noise hides"
-                           : "; the range depends on whether fine detail is real, and how fine";
+        choice.blurred_noise ? "; the range depends on whether fine detail is blurred noise"
+        : choice.noise > 0.0 ? "; the range depends on how much detail the noise hides"
+                             : "; the range depends on whether fine detail is real, and how fine";
     const std::string p99 = choice.is_range() ? fmt::format("{:.2g} to {:.2g}", choice.p99_degrees,
                                                             choice.upper_p99_degrees)
                                               : fmt::format("{:.2g}", choice.p99_degrees);
@@ -554,6 +556,18 @@ Json measurement_json(const BumpMeasurement& measurement, const BumpReference& r
             {"efficient", measurement.is_pareto_optimal}};
 }
 
+Json blurred_noise_json(const KernelChoice& choice) {
+    if (!choice.blurred_noise) return nullptr;
+    const BlurredNoiseReading& reading = *choice.blurred_noise;
+    return {{"deviation", reading.deviation},
+            {"if_detail",
+             {{"expected_degrees", choice.rms_degrees},
+              {"expected_degrees_upper", reading.detail_upper_rms_degrees}}},
+            {"if_noise",
+             {{"expected_degrees", reading.rms_degrees},
+              {"expected_degrees_upper", reading.upper_rms_degrees}}}};
+}
+
 Json grain_json(const KernelChoice& choice) {
     if (!choice.otherwise) return nullptr;
     const KernelPrediction& best = choice.otherwise->best;
@@ -573,7 +587,8 @@ void add_kernel_choice(Summary& summary, const KernelChoice& choice) {
                  {"expected_degrees_upper", choice.upper_rms_degrees},
                  {"expected_p99_degrees", choice.p99_degrees},
                  {"expected_p99_degrees_upper", choice.upper_p99_degrees},
-                 {"grain", grain_json(choice)}});
+                 {"grain", grain_json(choice)},
+                 {"blurred_noise", blurred_noise_json(choice)}});
 }
 
 /// "1.23", or "1.23 to 4.5" if it is a range.

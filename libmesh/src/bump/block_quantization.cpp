@@ -117,24 +117,25 @@ double common_step(std::span<const double> coefficients) {
     return 0.0;
 }
 
-}  // namespace
+using Coefficients = std::array<std::vector<double>, std::size_t{block} * block>;
 
-std::optional<BlockQuantization> block_quantization(std::span<const HeightTile> tiles,
-                                                    double code) {
-    std::array<std::vector<double>, std::size_t{block} * block> coefficients;
+/// Appends the coefficients of the blocks of a tile, in codes.
+void append_coefficients(const HeightTile& tile, double code, Coefficients& coefficients) {
     constexpr std::size_t max_samples = 400;
-    for (const HeightTile& tile : tiles) {
-        for_blocks(tile, 0, [&](int x, int y) {
-            const Block stored = transformed(read_block(tile, x, y), false);
-            for (std::size_t i = 0; i < stored.size(); ++i) {
-                const double value = (stored[i] - stored_offset(i, code)) / code;
-                // Smaller coefficients can result from rounding to codes.
-                constexpr double min_value = 2.5;
-                if (std::abs(value) > min_value && coefficients[i].size() < max_samples)
-                    coefficients[i].push_back(value);
-            }
-        });
-    }
+    for_blocks(tile, 0, [&](int x, int y) {
+        const Block stored = transformed(read_block(tile, x, y), false);
+        for (std::size_t i = 0; i < stored.size(); ++i) {
+            const double value = (stored[i] - stored_offset(i, code)) / code;
+            // Smaller coefficients can result from rounding to codes.
+            constexpr double min_value = 2.5;
+            if (std::abs(value) > min_value && coefficients[i].size() < max_samples)
+                coefficients[i].push_back(value);
+        }
+    });
+}
+
+/// Returns nullopt if too few coefficients are multiples of a step.
+std::optional<BlockQuantization> quantization_of(const Coefficients& coefficients, double code) {
     constexpr std::size_t min_samples = 20;
     constexpr double min_coarse_step = 3.0;
     constexpr double max_chance = 1e-3;
@@ -157,6 +158,22 @@ std::optional<BlockQuantization> block_quantization(std::span<const HeightTile> 
     constexpr int min_coarse = 3;
     if (coarse < min_coarse || 2 * coarse < tested) return std::nullopt;
     return result;
+}
+
+}  // namespace
+
+std::optional<BlockQuantization> block_quantization(std::span<const HeightTile> tiles,
+                                                    double code) {
+    Coefficients coefficients;
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+        append_coefficients(tiles[i], code, coefficients);
+        // Most maps have no blocks, which a few of the tiles show.
+        constexpr std::size_t min_tiles = 3;
+        if (i + 1 == min_tiles && tiles.size() >= 3 * min_tiles &&
+            !quantization_of(coefficients, code))
+            return std::nullopt;
+    }
+    return quantization_of(coefficients, code);
 }
 
 void remove_blocks(HeightTile& tile, const BlockQuantization& quantization) {

@@ -27,8 +27,13 @@ double sample_at(const double* line, std::ptrdiff_t stride, int index, int count
 void read_line(const double* line, std::ptrdiff_t stride, int count, Wrap wrap, int margin,
                std::vector<double>& padded) {
     padded.resize(static_cast<std::size_t>(count + 2 * margin));
-    for (int i = -margin; i < count + margin; ++i)
-        padded[static_cast<std::size_t>(i + margin)] = sample_at(line, stride, i, count, wrap);
+    for (int i = 0; i < count; ++i)
+        padded[static_cast<std::size_t>(i + margin)] = line[i * stride];
+    for (int i = 1; i <= margin; ++i) {
+        padded[static_cast<std::size_t>(margin - i)] = sample_at(line, stride, -i, count, wrap);
+        padded[static_cast<std::size_t>(margin + count - 1 + i)] =
+            sample_at(line, stride, count - 1 + i, count, wrap);
+    }
 }
 
 /// Calls process_line(first index, stride, count, wrap, buffer) for all rows or for all columns.
@@ -45,9 +50,10 @@ void for_lines(const HeightTile& tile, bool rows, const WithLine& process_line) 
     });
 }
 
-void filter_lines(HeightTile& tile, std::span<const double> weights, int spacing, bool rows) {
+/// Applies the filter along the rows.
+void filter_rows(HeightTile& tile, std::span<const double> weights, int spacing) {
     const int margin = static_cast<int>(weights.size() - 1) * spacing;
-    for_lines(tile, rows,
+    for_lines(tile, true,
               [&](std::size_t first, std::ptrdiff_t stride, int count, Wrap wrap,
                   std::vector<double>& padded) {
                   double* const line = tile.values.data() + first;
@@ -59,9 +65,41 @@ void filter_lines(HeightTile& tile, std::span<const double> weights, int spacing
                           const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(k) * spacing;
                           sum += weights[k] * (center[i - offset] + center[i + offset]);
                       }
-                      line[i * stride] = sum;
+                      line[i] = sum;
                   }
               });
+}
+
+/// Applies the filter along the columns, one whole row at a time.
+void filter_columns(HeightTile& tile, std::span<const double> weights, int spacing) {
+    const int margin = static_cast<int>(weights.size() - 1) * spacing;
+    const auto width = static_cast<std::size_t>(tile.width);
+    const auto row_at = [&](const std::vector<double>& rows, int row) {
+        return rows.data() + static_cast<std::size_t>(row) * width;
+    };
+    std::vector<double> padded(static_cast<std::size_t>(tile.height + 2 * margin) * width);
+    for (int row = -margin; row < tile.height + margin; ++row) {
+        double* const to = padded.data() + static_cast<std::size_t>(row + margin) * width;
+        if (row >= 0 && row < tile.height) {
+            std::copy_n(row_at(tile.values, row), width, to);
+            continue;
+        }
+        for (std::size_t x = 0; x < width; ++x)
+            to[x] = sample_at(tile.values.data() + x, tile.width, row, tile.height, tile.wrap.y);
+    }
+    for (int row = 0; row < tile.height; ++row) {
+        double* const to = tile.values.data() + static_cast<std::size_t>(row) * width;
+        const double* const center = row_at(padded, row + margin);
+        for (std::size_t x = 0; x < width; ++x)
+            to[x] = weights[0] * center[x];
+        for (std::size_t k = 1; k < weights.size(); ++k) {
+            const int offset = static_cast<int>(k) * spacing;
+            const double* const above = row_at(padded, row + margin - offset);
+            const double* const below = row_at(padded, row + margin + offset);
+            for (std::size_t x = 0; x < width; ++x)
+                to[x] += weights[k] * (above[x] + below[x]);
+        }
+    }
 }
 
 constexpr int max_radius = 6;  ///< Half the maximum order of the slopes.
@@ -224,8 +262,8 @@ double deviation_from_quantile(std::vector<double>& magnitudes) {
 
 HeightTile filtered(const HeightTile& tile, std::span<const double> weights, int spacing) {
     HeightTile result = tile;
-    filter_lines(result, weights, spacing, true);
-    filter_lines(result, weights, spacing, false);
+    filter_rows(result, weights, spacing);
+    filter_columns(result, weights, spacing);
     return result;
 }
 

@@ -169,8 +169,36 @@ struct NoiseSpectrum {
     [[nodiscard]] OctaveDeviations octave_deviations() const;
 };
 
+/// Returns true if the noise is in all parts of the map. Edges can have the same power spectrum,
+/// but most of the map is smoother than noise of that spectrum, which a quantile of the texels
+/// shows.
+///
+/// \param octaves  octave_deviations() of the map
+bool is_stationary(const NoiseSpectrum& noise, const OctaveDeviations& octaves, double rounding);
+
+/// Detects detail with the spectrum of noise that was blurred over about 2.5 to 5 texels. Smooth
+/// detail can have the same spectrum: such noise cannot be distinguished from it.
+///
+/// \param tiles  squares of equal size, whose side is a power of two of at least 16
+/// \param rounding  standard deviation of the rounding
+std::optional<NoiseSpectrum> widely_blurred_noise(std::span<const HeightTile> tiles,
+                                                  double rounding);
+
+/// Returns the variance of each of the two slopes that a kernel computes for isotropic noise
+/// without power near the corners of the spectrum, in squared heights per texel.
+double slope_variance(const GradientKernel& kernel, const NoiseSpectrum& noise);
+
 /// Generates periodic Gaussian noise with this spectrum on a square of `side` texels.
 std::vector<double> noise_field(const NoiseSpectrum& spectrum, int side, std::uint32_t seed);
+
+/// The bands of half an octave that must have the spectrum of blurred noise.
+struct BlurEvidence {
+    std::size_t min_bands = 4;
+    /// The decrease of the logarithm of the power up to the first one; below 1, the bands include
+    /// the plateau of low frequencies.
+    double max_first_exponent = 1.0;
+    double min_last_exponent = 1.5;  ///< The decrease up to the last one.
+};
 
 /// The power spectral density of several square tiles, in bins of frequency and direction. The
 /// scale is such that white noise of deviation 1 has the power 1 at all frequencies.
@@ -185,6 +213,8 @@ class PowerSpectrum {
     [[nodiscard]] std::vector<double> gains(const NoiseSpectrum& noise) const;
     /// Returns the bin of a frequency in radians per texel, from -pi to pi.
     [[nodiscard]] std::size_t bin_at(double x, double y) const;
+    /// Multiplies the Fourier coefficients of a square of twice the side of the tiles by gains().
+    void multiply(std::vector<std::complex<double>>& square, std::span<const double> gains) const;
 
     /// Returns the ratio of the mean power significantly above the noise to the mean power of the
     /// noise.
@@ -204,9 +234,10 @@ class PowerSpectrum {
     ///
     /// \param rounding  standard deviation of the rounding
     /// \return the spectrum of the noise and the rounding; nullopt if there is no such noise
-    [[nodiscard]] std::optional<NoiseSpectrum> blurred_noise(double rounding) const;
+    [[nodiscard]] std::optional<NoiseSpectrum> blurred_noise(
+        double rounding, const BlurEvidence& evidence = {}) const;
 
-    /// Returns the spectrum of the strongest noise, after a blur of up to two texels, that the map
+    /// Returns the spectrum of the strongest noise, after a blur of up to four texels, that the map
     /// can contain. Its power does not exceed the median power at any frequency.
     ///
     /// \param octaves  octave_deviations(), which the noise does not exceed either
@@ -218,8 +249,8 @@ class PowerSpectrum {
     [[nodiscard]] NoiseSpectrum hidden_detail(const NoiseSpectrum& noise) const;
 
     /// Returns the RMS slope of the detail along x or along y that reference_slopes() does not
-    /// resolve: the loss of its differences near the Nyquist frequency, and the same amount for
-    /// detail above that frequency.
+    /// resolve: the loss of its differences near the Nyquist frequency, and 2.5 times that amount
+    /// for detail above that frequency.
     [[nodiscard]] double unresolved_slope(const NoiseSpectrum& noise) const;
 
     /// Returns the standard deviation of white noise with the median power of the highest
@@ -245,13 +276,16 @@ class PowerSpectrum {
 
     int side_;
     std::vector<Bin> bins_;
+    std::vector<std::uint32_t> bins_of_coefficients_;  ///< Of a square of `side_`.
+    std::vector<std::uint32_t> bins_of_double_side_;   ///< Of a square of twice the side.
 };
 
-/// Removes noise from a tile by spectral subtraction. The result is inaccurate in some texels along
-/// the borders, where the tile is extended by reflection.
+/// Removes noise from one or two tiles by spectral subtraction. The result is inaccurate in some
+/// texels along the borders, where the tiles are extended by reflection.
 ///
 /// \param spectrum  of all tiles of the map
-HeightTile without_noise(const HeightTile& tile, const PowerSpectrum& spectrum,
-                         const NoiseSpectrum& noise);
+/// \param gains  spectrum.gains() for the noise
+void remove_noise(std::span<HeightTile> tiles, const PowerSpectrum& spectrum,
+                  std::span<const double> gains);
 
 }  // namespace relief::detail

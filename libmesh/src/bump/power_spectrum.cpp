@@ -159,6 +159,19 @@ void transform_square(std::vector<Complex>& square, int side, bool inverse) {
 }
 
 PowerSpectrum::PowerSpectrum(std::span<const HeightTile> tiles) : side_(tiles[0].width) {
+    const auto bins_of = [this](int side) {
+        std::vector<std::uint32_t> bins(static_cast<std::size_t>(side) *
+                                        static_cast<std::size_t>(side));
+        for (int row = 0; row < side; ++row) {
+            for (int column = 0; column < side; ++column) {
+                bins[static_cast<std::size_t>(row * side + column)] = static_cast<std::uint32_t>(
+                    bin_at(frequency(column, side), frequency(row, side)));
+            }
+        }
+        return bins;
+    };
+    bins_of_coefficients_ = bins_of(side_);
+    bins_of_double_side_ = bins_of(2 * side_);
     bins_.resize(static_cast<std::size_t>(side_ * sectors));
     std::vector<double> window(static_cast<std::size_t>(side_));
     double squares = 0.0;
@@ -176,13 +189,10 @@ PowerSpectrum::PowerSpectrum(std::span<const HeightTile> tiles) : side_(tiles[0]
                         window[i / static_cast<std::size_t>(side_)];
         }
         transform_square(square, side_, false);
-        for (int row = 0; row < side_; ++row) {
-            for (int column = 0; column < side_; ++column) {
-                Bin& bin = bins_[bin_at(frequency(column, side_), frequency(row, side_))];
-                bin.power += std::norm(square[static_cast<std::size_t>(row * side_ + column)]) /
-                             (squares * squares);
-                bin.count += 1.0;
-            }
+        for (std::size_t i = 0; i < square.size(); ++i) {
+            Bin& bin = bins_[bins_of_coefficients_[i]];
+            bin.power += std::norm(square[i]) / (squares * squares);
+            bin.count += 1.0;
         }
     }
     for (Bin& bin : bins_)
@@ -228,9 +238,11 @@ std::vector<double> PowerSpectrum::gains(const NoiseSpectrum& noise) const {
     // A smaller excess can result from spectral leakage, or from a noise spectrum that is too low.
     constexpr double min_ring_excess = 0.25;
     std::vector<double> result(bins_.size(), 0.0);
+    // Periodic detail stands out of noise at any frequency.
+    constexpr double min_periodic_ratio = 50.0;
     for (int ring = 0; ring < side_; ++ring) {
         const double frequency = 2.0 * pi * ring / side_;
-        if (frequency >= noise.min_noise_only_frequency) break;
+        const bool is_noise_only = frequency >= noise.min_noise_only_frequency;
         const double power = noise.at(frequency, 0.0);
         double residual = 0.0;
         double count = 0.0;
@@ -241,15 +253,17 @@ std::vector<double> PowerSpectrum::gains(const NoiseSpectrum& noise) const {
             // one in four is an independent sample of an exponential distribution.
             const double samples = std::max(1.0, bin.count / 4.0);
             // The last term accounts for the long tail if there are few samples.
-            if (bin.power > power * (1.0 + bin_threshold / std::sqrt(samples) +
-                                     2.0 * bin_threshold / samples)) {
+            const double min_ratio =
+                std::max(is_noise_only ? min_periodic_ratio : 0.0,
+                         1.0 + bin_threshold / std::sqrt(samples) + 2.0 * bin_threshold / samples);
+            if (bin.power > power * min_ratio) {
                 result[i] = std::sqrt((bin.power - power) / bin.power);
             } else {
                 residual += bin.power * bin.count;
                 count += bin.count;
             }
         }
-        if (count == 0.0) continue;
+        if (count == 0.0 || is_noise_only) continue;
         residual /= count;
         // The window correlates neighbors in all directions.
         const double min_excess =
@@ -367,112 +381,6 @@ std::optional<NoiseSpectrum> PowerSpectrum::grain() const {
     return noise;
 }
 
-std::optional<NoiseSpectrum> PowerSpectrum::blurred_noise(double rounding) const {
-    // The residual is that of the logarithm of the power.
-    constexpr double max_residual = 0.35;
-    constexpr double max_residual_ratio = 0.5;  ///< To the residual of the model of a surface.
-    constexpr double max_variance = 6.0;        ///< Of the blur, in squared texels.
-    constexpr std::size_t min_bands = 4;
-    std::vector<Band> bands = this->bands();
-    // The corners of the spectrum contain white noise in addition, if there is any.
-    const double floor = bands.empty() ? 0.0 : std::max(rounding * rounding, bands.back().power);
-    while (!bands.empty() &&
-           (bands.back().frequency > 0.5 * side_ || !(bands.back().power > 3.0 * floor)))
-        bands.pop_back();
-    // The fit of log(power) = level - variance * f^2 - exponent * log(f).
-    struct Fit {
-        double level = 0.0;
-        double variance = 0.0;
-        double residual = 0.0;
-    };
-    const auto squared_frequency = [&](const Band& band) {
-        const double f = 2.0 * pi * band.frequency / side_;
-        return f * f;
-    };
-    const auto fit = [&](std::size_t first, std::size_t end, double exponent) {
-        double n = 0.0;
-        double x = 0.0;
-        double y = 0.0;
-        double xx = 0.0;
-        double xy = 0.0;
-        double yy = 0.0;
-        for (std::size_t i = first; i < end; ++i) {
-            const double square = squared_frequency(bands[i]);
-            const double log_power =
-                portable::log(bands[i].power - floor) + 0.5 * exponent * portable::log(square);
-            n += 1.0;
-            x += square;
-            y += log_power;
-            xx += square * square;
-            xy += square * log_power;
-            yy += log_power * log_power;
-        }
-        const double slope = (n * xy - x * y) / (n * xx - x * x);
-        const double level = (y - slope * x) / n;
-        const double squares = yy - level * y - slope * xy;
-        return Fit{level, -slope, std::sqrt(std::max(0.0, squares) / n)};
-    };
-    const auto is_noise = [&](std::size_t first, std::size_t end) {
-        const Fit noise = fit(first, end, 0.0);
-        // The range must include the plateau and the decrease.
-        constexpr double surface_exponent = 2.0;
-        return noise.residual < max_residual && noise.variance < max_variance &&
-               noise.variance * squared_frequency(bands[first]) < 1.0 &&
-               noise.variance * squared_frequency(bands[end - 1]) > 1.5 &&
-               noise.residual < max_residual_ratio * fit(first, end, surface_exponent).residual;
-    };
-    // Other detail or noise can dominate the lowest and the highest bands.
-    for (std::size_t end = bands.size(); end >= min_bands; --end) {
-        for (std::size_t first = 0; first + min_bands <= end; ++first) {
-            if (!is_noise(first, end)) continue;
-            const Fit noise = fit(first, end, 0.0);
-            NoiseSpectrum result;
-            result.side = side_;
-            result.rings.clear();
-            result.min_noise_only_frequency = std::sqrt(squared_frequency(bands[first]));
-            for (int ring = 0; ring < side_; ++ring) {
-                const double f = 2.0 * pi * ring / side_;
-                result.rings.push_back(portable::exp(noise.level - noise.variance * f * f) + floor);
-            }
-            return result;
-        }
-    }
-    return {};
-}
-
-NoiseSpectrum PowerSpectrum::max_blurred_noise(const OctaveDeviations& octaves) const {
-    const std::vector<Band> bands = this->bands();
-    NoiseSpectrum strongest = NoiseSpectrum::white(0.0);
-    double max_slope = 0.0;
-    for (const double blur : {1.0, 1.5, 2.0}) {
-        const auto decrease = [&](double f) { return portable::exp(-blur * blur * f * f); };
-        NoiseSpectrum noise;
-        noise.side = side_;
-        noise.rings.clear();
-        for (int ring = 0; ring < side_; ++ring)
-            noise.rings.push_back(decrease(2.0 * pi * ring / side_));
-        double power = std::numeric_limits<double>::infinity();
-        const OctaveDeviations of_noise = noise.octave_deviations();
-        for (std::size_t i = 0; i < octaves.size(); ++i) {
-            const double ratio = octaves[i] / of_noise[i];
-            power = std::min(power, ratio * ratio);
-        }
-        // Beyond these frequencies the noise has hardly any power.
-        const double max_frequency = 2.0 / blur;
-        for (const Band& band : bands) {
-            const double f = 2.0 * pi * band.frequency / side_;
-            if (f < max_frequency) power = std::min(power, band.power / decrease(f));
-        }
-        const double slope = power / (blur * blur * blur * blur);
-        if (!(slope > max_slope)) continue;
-        max_slope = slope;
-        for (double& ring : noise.rings)
-            ring *= power;
-        strongest = std::move(noise);
-    }
-    return strongest;
-}
-
 NoiseSpectrum PowerSpectrum::hidden_detail(const NoiseSpectrum& noise) const {
     // Detail is visible in a ring if its power exceeds `min_visible` times that of the noise.
     // Detail of up to `max_hidden` times the noise can be hidden.
@@ -546,60 +454,77 @@ double PowerSpectrum::unresolved_slope(const NoiseSpectrum& noise) const {
     double square = 0.0;
     for (int row = 0; row < side_; ++row) {
         for (int column = 0; column < side_; ++column) {
-            const std::size_t bin = bin_at(frequency(column, side_), frequency(row, side_));
+            const std::size_t bin =
+                bins_of_coefficients_[static_cast<std::size_t>(row * side_ + column)];
             square +=
                 gains[bin] * gains[bin] * bins_[bin].power *
                 (losses[static_cast<std::size_t>(row)] + losses[static_cast<std::size_t>(column)]);
         }
     }
-    // The factor 2 for detail above the Nyquist frequency cancels the half that is along x.
-    return std::sqrt(square) / side_;
+    // Half of the sum is along x.
+    constexpr double amount_above_nyquist = 2.5;
+    return std::sqrt(0.5 * (1.0 + amount_above_nyquist) * square) / side_;
 }
 
-HeightTile without_noise(const HeightTile& tile, const PowerSpectrum& spectrum,
-                         const NoiseSpectrum& noise) {
-    const int side = 2 * tile.width;
-    const int margin = tile.width / 2;
-    const std::vector<double> residual = without_trend(tile);
-    // The tile is extended by reflection, and a Hann window fades out the extension.
+void PowerSpectrum::multiply(std::vector<Complex>& square, std::span<const double> gains) const {
+    for (std::size_t i = 0; i < square.size(); ++i)
+        square[i] *= gains[bins_of_double_side_[i]];
+}
+
+void remove_noise(std::span<HeightTile> tiles, const PowerSpectrum& spectrum,
+                  std::span<const double> gains) {
+    // Both tiles have one transform, as its real and its imaginary part: the gains are real and
+    // equal for opposite frequencies.
+    const int tile_side = tiles.front().width;
+    const int side = 2 * tile_side;
+    const int margin = tile_side / 2;
+    // The tiles are extended by reflection, and a Hann window fades out the extension.
     std::vector<double> fade(static_cast<std::size_t>(side), 1.0);
     for (int i = 0; i < margin; ++i) {
         const double w = 0.5 - 0.5 * portable::cos(pi * (i + 0.5) / margin);
         fade[static_cast<std::size_t>(i)] = fade[static_cast<std::size_t>(side - 1 - i)] = w;
     }
+    std::vector<std::vector<double>> residuals;
     std::vector<Complex> square(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
-    for (int row = 0; row < side; ++row) {
-        for (int column = 0; column < side; ++column) {
-            const double value = reflected(row - margin, tile.height, [&](int y) {
-                return reflected(column - margin, tile.width, [&](int x) {
-                    return residual[static_cast<std::size_t>(y * tile.width + x)];
+    std::vector<double> extended(static_cast<std::size_t>(side) *
+                                 static_cast<std::size_t>(tile_side));
+    for (const HeightTile& tile : tiles) {
+        const std::vector<double>& residual = residuals.emplace_back(without_trend(tile));
+        const Complex part = residuals.size() == 1 ? Complex(1.0, 0.0) : Complex(0.0, 1.0);
+        for (int row = 0; row < tile_side; ++row) {
+            const double* const line = residual.data() + row * tile_side;
+            for (int column = 0; column < side; ++column) {
+                extended[static_cast<std::size_t>(row * side + column)] =
+                    reflected(column - margin, tile_side, [&](int x) { return line[x]; });
+            }
+        }
+        for (int row = 0; row < side; ++row) {
+            for (int column = 0; column < side; ++column) {
+                const double value = reflected(row - margin, tile_side, [&](int y) {
+                    return extended[static_cast<std::size_t>(y * side + column)];
                 });
-            });
-            square[static_cast<std::size_t>(row * side + column)] =
-                value * fade[static_cast<std::size_t>(row)] *
-                fade[static_cast<std::size_t>(column)];
+                square[static_cast<std::size_t>(row * side + column)] +=
+                    part * (value * fade[static_cast<std::size_t>(row)] *
+                            fade[static_cast<std::size_t>(column)]);
+            }
         }
     }
     transform_square(square, side, false);
-    const std::vector<double> gains = spectrum.gains(noise);
-    for (int row = 0; row < side; ++row) {
-        for (int column = 0; column < side; ++column) {
-            square[static_cast<std::size_t>(row * side + column)] *=
-                gains[spectrum.bin_at(frequency(column, side), frequency(row, side))];
-        }
-    }
+    spectrum.multiply(square, gains);
     transform_square(square, side, true);
-    HeightTile result = tile;
     const double scale = 1.0 / (static_cast<double>(side) * side);
-    for (int row = 0; row < tile.height; ++row) {
-        for (int column = 0; column < tile.width; ++column) {
-            const auto texel = static_cast<std::size_t>(row * tile.width + column);
-            const auto index = static_cast<std::size_t>((row + margin) * side + column + margin);
-            // Subtracting `residual` keeps the least-squares plane of the tile.
-            result.values[texel] += square[index].real() * scale - residual[texel];
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+        for (int row = 0; row < tile_side; ++row) {
+            for (int column = 0; column < tile_side; ++column) {
+                const auto texel = static_cast<std::size_t>(row * tile_side + column);
+                const Complex& value =
+                    square[static_cast<std::size_t>((row + margin) * side + column + margin)];
+                // Subtracting the residual keeps the least-squares plane of the tile.
+                tiles[i].values[texel] +=
+                    (i == 0 ? value.real() : value.imag()) * scale - residuals[i][texel];
+            }
         }
     }
-    return result;
 }
 
 }  // namespace relief::detail

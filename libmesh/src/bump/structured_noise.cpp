@@ -78,7 +78,10 @@ double line_deviation(std::span<const HeightTile> tiles, bool rows, double round
     if (deviation < min_ratio * deviation_from_quantile(waves) || deviation < 1.2 * rounding ||
         deviation_from_quantile(smoother_offsets) > max_smoothness * deviation)
         return 0.0;
-    return deviation;
+    // The lines are few, and the median is more accurate than a lower quantile. Detail is weaker.
+    const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
+    std::nth_element(offsets.begin(), middle, offsets.end());
+    return *middle / 0.6745;
 }
 
 void remove_offsets(HeightTile& tile, bool rows, double deviation) {
@@ -136,24 +139,38 @@ std::optional<NoiseByHeight> noise_by_height(std::span<const HeightTile> tiles) 
         }
     }
     if (samples.size() < classes * min_samples) return std::nullopt;
-    std::sort(samples.begin(), samples.end());
     NoiseByHeight noise;
+    std::vector<double> tails;  // Ratios of deviations by the median and by the quantile.
     std::vector<double> magnitudes;
+    const auto sample_at = [&](std::size_t i) {
+        return samples.begin() + static_cast<std::ptrdiff_t>(i);
+    };
     for (std::size_t i = 0; i < classes; ++i) {
         const std::size_t begin = samples.size() * i / classes;
         const std::size_t end = samples.size() * (i + 1) / classes;
+        // Moves the samples of the class to its place, and those of larger heights behind it.
+        if (end < samples.size()) std::nth_element(sample_at(begin), sample_at(end), samples.end());
+        std::nth_element(sample_at(begin), sample_at((begin + end) / 2), sample_at(end));
         magnitudes.clear();
         for (std::size_t k = begin; k < end; ++k)
             magnitudes.push_back(samples[k].second);
         const double deviation = deviation_from_quantile(magnitudes);
-        // Half of a Gaussian lies within 0.6745 standard deviations. Detail is in few texels, and
-        // its distribution has a longer tail.
-        constexpr double max_tail = 1.2;
+        // Half of a Gaussian lies within 0.6745 standard deviations.
         const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
         std::nth_element(magnitudes.begin(), middle, magnitudes.end());
-        if (!(deviation > 0.0) || *middle / 0.6745 > max_tail * deviation) return std::nullopt;
+        tails.push_back(*middle / 0.6745 / deviation);
         noise.heights.push_back(samples[(begin + end) / 2].first);
         noise.deviations.push_back(deviation);
+    }
+    const double max_deviation =
+        *std::max_element(noise.deviations.begin(), noise.deviations.end());
+    for (std::size_t i = 0; i < classes; ++i) {
+        // Detail is in few texels, and its distribution has a longer tail. A ground without noise
+        // has any distribution.
+        constexpr double max_tail = 1.2;
+        constexpr double max_ground = 0.05;
+        if (noise.deviations[i] > max_ground * max_deviation && !(tails[i] <= max_tail))
+            return std::nullopt;
     }
     // The noise grows with the height, or with the depth if the map is inverted.
     constexpr double min_growth = 1.5;

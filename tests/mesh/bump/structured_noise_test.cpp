@@ -72,6 +72,18 @@ TEST(NoiseByHeight, GrowsWithTheHeight) {
     EXPECT_FALSE(noise_by_height(std::span(&constant, 1)));
 }
 
+TEST(NoiseByHeight, GrowsFromAGroundWithoutNoise) {
+    Random random(8);
+    const HeightTile tile = tile_with([&](int x, int y) {
+        const double height = std::max(0.0, smooth_surface(x, y));
+        return height + 0.05 * height * random.normal();
+    });
+    const auto noise = noise_by_height(std::span(&tile, 1));
+    ASSERT_TRUE(noise);
+    EXPECT_NEAR(noise->at(4.0), 0.2, 0.05);
+    EXPECT_LT(noise->at(0.0), 0.01);
+}
+
 TEST(BlockQuantization, StepsAreEstimatedFromDecodedHeights) {
     BlockQuantization steps;
     for (std::size_t i = 0; i < steps.steps.size(); ++i)
@@ -102,32 +114,73 @@ TEST(BlockQuantization, StepsAreEstimatedFromDecodedHeights) {
     EXPECT_NE(smooth.values, inside.values);
 }
 
+template <typename Power>
+NoiseSpectrum spectrum_of(const Power& power) {
+    NoiseSpectrum spectrum;
+    spectrum.side = tile_side;
+    spectrum.rings.clear();
+    for (int ring = 0; ring < tile_side; ++ring)
+        spectrum.rings.push_back(power(6.2831853 * std::max(1, ring) / tile_side));
+    return spectrum;
+}
+
+/// A surface with a field of this spectrum.
+HeightTile rough_tile(const NoiseSpectrum& spectrum, std::uint32_t seed) {
+    const std::vector<double> values = noise_field(spectrum, tile_side, seed);
+    return tile_with([&](int x, int y) {
+        return smooth_surface(x, y) + values[static_cast<std::size_t>(y * tile_side + x)];
+    });
+}
+
 TEST(PowerSpectrum, BlurredNoiseIsDetectedAndASurfaceIsNot) {
-    const auto spectrum_of = [](const auto& power) {
-        NoiseSpectrum spectrum;
-        spectrum.side = tile_side;
-        spectrum.rings.clear();
-        for (int ring = 0; ring < tile_side; ++ring)
-            spectrum.rings.push_back(power(6.2831853 * std::max(1, ring) / tile_side));
-        return spectrum;
-    };
     constexpr double blur = 1.2;
     const NoiseSpectrum noise =
         spectrum_of([](double f) { return 0.01 * std::exp(-blur * blur * f * f); });
     const NoiseSpectrum surface =
         spectrum_of([](double f) { return 0.01 * std::pow(f, -3.0) * std::exp(-0.5 * f * f); });
-    const auto field = [](const NoiseSpectrum& spectrum, std::uint32_t seed) {
-        const std::vector<double> values = noise_field(spectrum, tile_side, seed);
-        return tile_with([&](int x, int y) {
-            return smooth_surface(x, y) + values[static_cast<std::size_t>(y * tile_side + x)];
-        });
-    };
-    const HeightTile noisy[] = {field(noise, 1), field(noise, 2)};
+    const HeightTile noisy[] = {rough_tile(noise, 1), rough_tile(noise, 2)};
     const auto found = PowerSpectrum(noisy).blurred_noise(1e-6);
     ASSERT_TRUE(found);
     EXPECT_NEAR(found->deviation() / noise.deviation(), 1.0, 0.15);
-    const HeightTile rough[] = {field(surface, 1), field(surface, 2)};
+    const HeightTile rough[] = {rough_tile(surface, 1), rough_tile(surface, 2)};
     EXPECT_FALSE(PowerSpectrum(rough).blurred_noise(1e-6));
+}
+
+TEST(PowerSpectrum, PeriodicDetailIsKeptWhereOnlyNoiseIsExpected) {
+    NoiseSpectrum noise = NoiseSpectrum::white(0.1);
+    noise.min_noise_only_frequency = 0.3;
+    Random random(3);
+    const HeightTile tiles[] = {tile_with([&](int x, int) {
+        return std::sin(6.2831853 * 16.0 / tile_side * x) + 0.1 * random.normal();
+    })};
+    const PowerSpectrum spectrum(tiles);
+    const std::vector<double> gains = spectrum.gains(noise);
+    EXPECT_GT(gains[spectrum.bin_at(6.2831853 * 16.0 / tile_side, 0.0)], 0.9);
+    EXPECT_EQ(gains[spectrum.bin_at(1.5, 1.0)], 0.0);
+}
+
+TEST(WidelyBlurredNoise, IsDetectedAndASurfaceIsNot) {
+    constexpr double blur = 3.0;
+    const NoiseSpectrum noise =
+        spectrum_of([](double f) { return 0.3 * std::exp(-blur * blur * f * f); });
+    const HeightTile noisy[] = {rough_tile(noise, 1), rough_tile(noise, 2), rough_tile(noise, 3)};
+    const auto found = widely_blurred_noise(noisy, 1e-6);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->deviation() / noise.deviation(), 1.0, 0.2);
+    const NoiseSpectrum surface = spectrum_of([](double f) { return 0.01 * std::pow(f, -3.0); });
+    const HeightTile rough[] = {rough_tile(surface, 1), rough_tile(surface, 2),
+                                rough_tile(surface, 3)};
+    EXPECT_FALSE(widely_blurred_noise(rough, 1e-6));
+    const HeightTile smooth[] = {tile_with(smooth_surface)};
+    EXPECT_FALSE(widely_blurred_noise(smooth, 1e-6));
+}
+
+TEST(SlopeVariance, IsTheSquaredNoiseGainForNoiseThatTheKernelResolves) {
+    // The kernel has hardly any response near the Nyquist frequency, where the sum is inaccurate.
+    const GradientKernel kernel = gradient_kernel(Kernel::gaussian, 4);
+    const double gain = noise_gain(kernel);
+    EXPECT_NEAR(slope_variance(kernel, NoiseSpectrum::white(0.5)) / (0.25 * gain * gain), 1.0,
+                0.02);
 }
 
 TEST(HeightDepth, LevelsThatWereRoundedToCodes) {

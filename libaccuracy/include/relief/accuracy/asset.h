@@ -24,6 +24,7 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
+#include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
 
 namespace RELIEF_API relief {
@@ -301,8 +302,10 @@ std::vector<AssetExperiment> measure_asset_mesh(const Mesh& mesh,
 /// this map (measure_bump()).
 /// \param size  of the whole map
 /// \param bump  strength, texel and wrap
+/// \param report  gets a finding if fine detail may be blurred noise
 AssetExperiment measure_asset_heights(const BumpSample& sample, glm::ivec2 size,
-                                      const BumpOptions& bump, const AssetOptions& options);
+                                      const BumpOptions& bump, const AssetOptions& options,
+                                      Report& report = IgnoredReport());
 /// The same for a map in memory: one channel, as for normals_from_height().
 AssetExperiment measure_asset_heights(const Image& height, const BumpOptions& bump,
                                       const AssetOptions& options,

@@ -247,6 +247,22 @@ struct AlternativeChoice {
     KernelPrediction best;     ///< The best kernel in that case.
 };
 
+/// The expected error if fine detail is noise that was blurred over about 2.5 texels or more.
+/// Nothing distinguishes such noise from detail.
+struct BlurredNoiseReading {
+    double deviation = 0.0;  ///< Standard deviation of that detail, in the unit of heights.
+    /// The upper end of the expected RMS error if it is detail; the lower end is
+    /// KernelChoice::rms_degrees.
+    double detail_upper_rms_degrees = 0.0;
+    double rms_degrees = 0.0;        ///< The lower end of the expected RMS error if it is noise.
+    double upper_rms_degrees = 0.0;  ///< The upper end in that case.
+
+    /// Returns true if the error is far larger than that of detail.
+    [[nodiscard]] bool is_significant(double detail_rms_degrees) const {
+        return rms_degrees > 1.0 && rms_degrees > 1.5 * detail_rms_degrees;
+    }
+};
+
 /// The selected kernel and the properties of the map.
 struct KernelChoice {
     Kernel kernel = Kernel::sobel3;
@@ -271,6 +287,9 @@ struct KernelChoice {
     double noise = 0.0;
     /// Standard deviation of all grain, noise or detail, in the unit of heights.
     double grain = 0.0;
+    /// Present if fine detail can be blurred noise, and this matters. The upper estimates above
+    /// include it.
+    std::optional<BlurredNoiseReading> blurred_noise;
     /// For maps with grain: the result for the other interpretation.
     std::optional<AlternativeChoice> otherwise;
     double spikes = 0.0;  ///< Share of isolated outliers, which are treated as noise.
@@ -278,7 +297,8 @@ struct KernelChoice {
 
     /// Returns true if the upper estimate is so much larger that a single number would be
     /// misleading.
-    [[nodiscard]] bool is_range() const { return upper_rms_degrees > 1.5 * rms_degrees; }
+    [[nodiscard]] bool is_range() const { return upper_rms_degrees > min_range * rms_degrees; }
+    static constexpr double min_range = 1.05;
     /// Returns true if another kernel has a far smaller error under the other interpretation of the
     /// grain.
     [[nodiscard]] bool is_ambiguous() const {
@@ -290,6 +310,9 @@ struct KernelChoice {
 
 /// Formats the expected error in degrees: "1.3", or "1.3 to 9.9" if it is a range.
 std::string expected_error_text(const KernelChoice& choice);
+
+/// Reports that fine detail may be blurred noise, with the expected errors of both cases.
+void report_blurred_noise(const KernelChoice& choice, Report& report);
 
 /// Returns the best radius for Kernel::gaussian, even if another kernel was selected.
 int best_gaussian_radius(const KernelChoice& choice);

@@ -1,0 +1,617 @@
+// SPDX-License-Identifier: Apache-2.0
+// Nothing throws. Tests: tests/mesh/bump/kernel_choice_test.cpp.
+#include "bump/kernel_error_model.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+
+#include "image/height_holes.h"
+#include "parallel.h"
+#include "relief/mesh/report.h"
+
+namespace relief::detail {
+namespace {
+
+/// Returns the values of all parts in one image, for statistics that do not depend on positions.
+Image concatenated(std::span<const Image> parts) {
+    return std::visit(
+        [&](const auto& first) {
+            using Samples = std::remove_cvref_t<decltype(first)>;
+            Samples all;
+            for (const Image& part : parts) {
+                const auto& samples = std::get<Samples>(part.samples);
+                all.insert(all.end(), samples.begin(), samples.end());
+            }
+            Image image{static_cast<int>(all.size()), 1, 1, ColorSpace::data, {}};
+            image.samples = std::move(all);
+            return image;
+        },
+        parts[0].samples);
+}
+
+/// Returns the number of mantissa bits that the values use.
+int mantissa_bits(const Image& values) {
+    unsigned used = 0;
+    for (const float value : values.as<float>()) {
+        if (std::isfinite(value)) used |= std::bit_cast<std::uint32_t>(value);
+    }
+    return 24 - std::min(23, std::countr_zero(used));
+}
+
+HeightTile to_tile(const Image& part) {
+    Image floats = to_float(part);
+    Report ignored;  // The conversion itself reports the holes.
+    std::vector<float> filled = filled_holes(floats, Wrap::clamp, ignored);
+    if (!filled.empty()) floats.samples = std::move(filled);
+    const std::span<const float> samples = floats.as<float>();
+    return {floats.width, floats.height, Wrap::clamp, {samples.begin(), samples.end()}};
+}
+
+/// Returns true for masks and terraces, whose few levels are farther apart than the codes.
+bool has_exact_levels(const HeightDepth& depth, int bits_of_file) {
+    constexpr int max_bits = 2;
+    if (depth.bits == 0 || depth.bits > max_bits) return false;
+    return bits_of_file == 32 || depth.step > 1.5 / (std::ldexp(1.0, bits_of_file) - 1.0);
+}
+
+Image to_image(const HeightTile& tile) {
+    Image image = make_image(tile.width, tile.height, 1, 32, ColorSpace::data);
+    std::transform(tile.values.begin(), tile.values.end(), image.as<float>().begin(),
+                   [](double value) { return static_cast<float>(value); });
+    return image;
+}
+
+Image remove_steps(const Image& heights, double step) {
+    return destaircase(heights, {.wrap = Wrap::clamp, .step = step}).heights;
+}
+
+/// Removes details of a few texels, which are remainders of wide quantization steps. If B is the
+/// binomial filter (1 4 6 4 1) / 16, the filter is 2 B - B^2, which preserves crests.
+HeightTile smoothed(HeightTile tile) {
+    static constexpr std::array weights = {122.0 / 256, 72.0 / 256, 4.0 / 256, -8.0 / 256,
+                                           -1.0 / 256};
+    for (const int spacing : {1, 2})
+        tile = filtered(tile, weights, spacing);
+    return tile;
+}
+
+double root_mean_square_rounding(std::span<const HeightTile> tiles, const HeightCoding& coding) {
+    double squares = 0.0;
+    double count = 0.0;
+    for (const HeightTile& tile : tiles) {
+        for (const double value : tile.values)
+            squares += coding.rounding_deviation(value) * coding.rounding_deviation(value);
+        count += static_cast<double>(tile.values.size());
+    }
+    return std::sqrt(squares / count);
+}
+
+bool have_spectrum(std::span<const HeightTile> tiles) {
+    return std::all_of(tiles.begin(), tiles.end(), [&](const HeightTile& tile) {
+        return tile.width == tile.height && tile.width == tiles[0].width && tile.width >= 8 &&
+               std::has_single_bit(static_cast<unsigned>(tile.width));
+    });
+}
+
+/// Limit of the relative excess of the power over that of the grain in a map of only grain.
+constexpr double max_grain_excess = 0.01;
+
+/// Returns the standard deviation of the remainder, if independent rounding is part of `deviation`.
+double quadrature_difference(double deviation, double rounding) {
+    return std::sqrt(std::max(0.0, deviation * deviation - rounding * rounding));
+}
+
+/// Estimates the strongest noise that a map allows from the quantiles of its octave bands. The
+/// noise may be blurred, but not much more than by a binomial filter of 3 x 3 texels. Returns
+/// nullopt if there is no noise.
+///
+/// \param octaves  octave_deviations()
+/// \param high  deviation of white noise from the highest frequencies
+std::optional<NoiseSpectrum> max_noise(const OctaveDeviations& octaves, double high,
+                                       double rounding, int side) {
+    // The maximum ratio of such noise in an octave to the next higher one, at first to `high`.
+    static constexpr std::array max_ratios = {20.0, 3.5, 1.4, 1.1};
+    OctaveDeviations deviations{};
+    double max_deviation = quadrature_difference(high, rounding);
+    for (std::size_t i = 0; i < deviations.size(); ++i)
+        max_deviation = deviations[i] =
+            std::min(quadrature_difference(octaves[i], rounding), max_ratios[i] * max_deviation);
+    if (!(deviations[0] > 0.5 * rounding) || deviations.back() == 0.0) return std::nullopt;
+    NoiseSpectrum noise;
+    noise.side = side;
+    noise.rings.clear();
+    for (int ring = 0; ring < side; ++ring) {
+        const double f = std::clamp(2.0 * std::numbers::pi * ring / side, octave_frequencies.back(),
+                                    octave_frequencies.front());
+        std::size_t i = 0;
+        while (i + 2 < deviations.size() && octave_frequencies[i + 1] > f)
+            ++i;
+        const double w = portable::log(f / octave_frequencies[i]) /
+                         portable::log(octave_frequencies[i + 1] / octave_frequencies[i]);
+        const double deviation =
+            deviations[i] * portable::pow(deviations[i + 1] / deviations[i], w);
+        noise.rings.push_back(deviation * deviation);
+    }
+    return noise;
+}
+
+/// Returns every fourth element: the diagonal of 3 x 3 tiles, which suffices for quantiles and for
+/// differences.
+template <typename T>
+std::vector<T> every_fourth(const std::vector<T>& all) {
+    std::vector<T> result;
+    for (std::size_t i = 0; i < all.size(); i += 4)
+        result.push_back(all[i]);
+    return result;
+}
+
+/// Returns true if the noise is white in the highest octave, which consists of grain.
+bool is_flat(const NoiseSpectrum& noise) {
+    const auto begin = noise.rings.begin() + noise.side / 4;
+    const auto end = noise.rings.begin() + 5 * noise.side / 8;
+    const auto [min, max] = std::minmax_element(begin, end);
+    return *max < 1.6 * *min;
+}
+
+/// Returns the root of the mean square of the deviations at all heights of the tiles.
+double mean_deviation(const NoiseByHeight& noise, std::span<const HeightTile> tiles) {
+    double squares = 0.0;
+    double count = 0.0;
+    for (const HeightTile& tile : tiles) {
+        for (const double height : tile.values)
+            squares += noise.at(height) * noise.at(height);
+        count += static_cast<double>(tile.values.size());
+    }
+    return std::sqrt(squares / count);
+}
+
+/// Statistics of squared angles in radians.
+class SquaredAngles {
+  public:
+    void add(double square) {
+        sum_ += square;
+        sum_of_angles_ += std::sqrt(square);
+        max_ = std::max(max_, square);
+        count_ += 1.0;
+        if (bins_.empty()) bins_.resize(bin_count, 0);
+        ++bins_[bin_of(square)];
+    }
+
+    void add(const SquaredAngles& other) {
+        sum_ += other.sum_;
+        sum_of_angles_ += other.sum_of_angles_;
+        max_ = std::max(max_, other.max_);
+        count_ += other.count_;
+        if (bins_.empty()) bins_.resize(bin_count, 0);
+        for (std::size_t i = 0; i < other.bins_.size(); ++i)
+            bins_[i] += other.bins_[i];
+    }
+
+    [[nodiscard]] KernelPrediction prediction(Kernel kernel, int radius) const {
+        constexpr double degrees = 180.0 / std::numbers::pi;
+        KernelPrediction result{kernel, radius};
+        if (count_ == 0.0) return result;
+        result.rms_degrees = std::sqrt(sum_ / count_) * degrees;
+        result.max_degrees = std::sqrt(max_) * degrees;
+        result.mean_degrees = sum_of_angles_ / count_ * degrees;
+        result.p99_degrees = std::sqrt(percentile_99()) * degrees;
+        return result;
+    }
+
+  private:
+    // The bins are those of the upper bits of a float: its exponent and 5 bits of its mantissa.
+    static constexpr int shift = 18;
+    static constexpr std::uint32_t lowest = std::bit_cast<std::uint32_t>(0x1p-60F) >> shift;
+    static constexpr std::size_t bin_count =
+        (std::bit_cast<std::uint32_t>(16.0F) >> shift) - lowest + 1;
+
+    static std::size_t bin_of(double square) {
+        const std::uint32_t bits = std::bit_cast<std::uint32_t>(static_cast<float>(square));
+        return std::clamp<std::size_t>(bits >> shift, lowest, lowest + bin_count - 1) - lowest;
+    }
+
+    /// Returns the upper end of the bin in which the smallest 99 % end.
+    [[nodiscard]] double percentile_99() const {
+        double count = 0.0;
+        for (std::size_t i = 0; i < bins_.size(); ++i) {
+            count += bins_[i];
+            if (count < 0.99 * count_) continue;
+            const auto next = static_cast<std::uint32_t>(lowest + i + 1) << shift;
+            return std::min<double>(std::bit_cast<float>(next), max_);
+        }
+        return max_;
+    }
+
+    double sum_ = 0.0;
+    double sum_of_angles_ = 0.0;
+    double max_ = 0.0;
+    double count_ = 0.0;
+    std::vector<std::uint32_t> bins_;
+};
+
+/// Sums the squared angles between float normals and the reference. A series of the chord length
+/// approximates the angle; it is exact for small angles and 1% too small at 90 degrees.
+///
+/// \param margin  texels along the border to exclude
+SquaredAngles squared_angles(const Image& normals, std::span<const glm::dvec3> reference,
+                             int margin) {
+    const std::span<const float> n = normals.as<float>();
+    SquaredAngles result;
+    for (int y = margin; y < normals.height - margin; ++y) {
+        for (int x = margin; x < normals.width - margin; ++x) {
+            const auto i = static_cast<std::size_t>(y * normals.width + x);
+            if (reference[i] == glm::dvec3(0.0)) continue;
+            const glm::dvec3 chord =
+                glm::dvec3(n[3 * i], n[3 * i + 1], n[3 * i + 2]) - reference[i];
+            const double square = glm::dot(chord, chord);
+            const double angle_per_chord = 1.0 + square * (1.0 / 24.0 + square * (3.0 / 640.0));
+            result.add(square * angle_per_chord * angle_per_chord);
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+HeightCoding coding_of(std::span<const Image> parts) {
+    const Image all = concatenated(parts);
+    HeightCoding coding;
+    coding.depth = height_depth(all);
+    if (coding.depth.bits == 0) coding.mantissa_bits = mantissa_bits(all);
+    coding.has_exact_levels = has_exact_levels(coding.depth, parts[0].bits());
+    return coding;
+}
+
+std::optional<NoiseSpectrum> blurred_noise_of(std::span<const Image> parts,
+                                              const HeightCoding& coding) {
+    std::vector<HeightTile> tiles(parts.size());
+    std::transform(parts.begin(), parts.end(), tiles.begin(), to_tile);
+    if (!have_spectrum(tiles) || tiles.front().width < 16) return std::nullopt;
+    constexpr std::size_t many = 9;
+    if (tiles.size() >= many) tiles = every_fourth(tiles);
+    return widely_blurred_noise(tiles, root_mean_square_rounding(tiles, coding));
+}
+
+double HeightCoding::rounding_deviation(double height) const {
+    constexpr double of_rounding = 0.28867513459481287;  // The square root of 1/12.
+    if (has_exact_levels) return 0.0;
+    if (depth.bits > 0) return of_rounding * depth.step;
+    if (height == 0.0) return 0.0;
+    int exponent = 0;
+    std::frexp(height, &exponent);
+    return of_rounding * std::ldexp(1.0, exponent - mantissa_bits);
+}
+
+void KernelErrorModel::remove_blocks() {
+    constexpr int bits_of_jpeg = 8;
+    if (coding_.depth.bits != bits_of_jpeg || coding_.step() == 0.0) return;
+    blocks_ = block_quantization(tiles_, coding_.step());
+    if (!blocks_) return;
+    for (HeightTile& tile : tiles_)
+        detail::remove_blocks(tile, *blocks_);
+}
+
+void KernelErrorModel::remove_outliers() {
+    // A smaller share can be detail, and has little effect.
+    constexpr double min_share = 0.001;
+    std::size_t texels = 0;
+    const std::vector<HeightTile> as_stored = tiles_;
+    for (HeightTile& tile : tiles_) {
+        const std::vector<double> removed = detail::remove_outliers(tile, 2.5 * coding_.step());
+        outliers_.insert(outliers_.end(), removed.begin(), removed.end());
+        texels += tile.values.size();
+    }
+    outlier_share_ = static_cast<double>(outliers_.size()) / static_cast<double>(texels);
+    if (outlier_share_ >= min_share) return;
+    tiles_ = as_stored;
+    outliers_.clear();
+    outlier_share_ = 0.0;
+}
+
+void KernelErrorModel::detect_grain() {
+    const double rounding = root_mean_square_rounding(tiles_, coding_);
+    if (!coding_.has_exact_levels) lines_ = line_noise(tiles_, rounding);
+    if (lines_.rows > 0.0 || lines_.columns > 0.0) {
+        tiles_with_lines_ = tiles_;
+        for (HeightTile& tile : tiles_)
+            remove_line_noise(tile, lines_);
+    }
+    noisy_tiles_ = tiles_;
+    rounding_ = rounding;
+    high_pass_ = high_pass_noise(tiles_);
+    if (have_spectrum(tiles_)) spectrum_.emplace(tiles_);
+    white_deviation_ =
+        spectrum_ ? std::min(high_pass_.deviation, spectrum_->white_floor()) : high_pass_.deviation;
+    // A small excess over rounding can be detail. Rounded planes also contain regular patterns.
+    const double min_deviation = (coding_.step() > 0.0 ? 1.1 : 1.25) * rounding;
+    OctaveDeviations octaves{};
+    if (spectrum_) {
+        octaves = octave_deviations(every_fourth(tiles_));
+        colored_noise_ = spectrum_->blurred_noise(rounding);
+        is_noise_blurred_ = colored_noise_.has_value();
+        if (!colored_noise_) colored_noise_ = spectrum_->grain();
+        max_noise_ = max_noise(octaves, high_pass_.deviation, rounding, tiles_[0].width);
+    }
+    if (colored_noise_ &&
+        (is_flat(*colored_noise_) || !is_stationary(*colored_noise_, octaves, rounding) ||
+         !(colored_noise_->deviation() > min_deviation)))
+        colored_noise_.reset();
+    // Edges can dominate the spectrum, but not the lower quantiles of the octave bands. The highest
+    // band is not compared, because a blur removes most of it.
+    constexpr double min_detail_ratio = 1.9;
+    constexpr double min_low_ratio = 0.6;  // Blurred noise has at least as much power below.
+    if (!colored_noise_ && max_noise_ &&
+        max_noise_->deviation() > std::max(min_deviation, 1.5 * white_deviation_) &&
+        octaves[1] > 2.0 * rounding && octaves[2] < min_detail_ratio * octaves[1] &&
+        std::min(octaves[2], octaves[3]) > min_low_ratio * octaves[1]) {
+        colored_noise_ = max_noise_;
+        is_noise_blurred_ = true;
+    }
+    if (!colored_noise_) is_noise_blurred_ = false;
+    if (colored_noise_)
+        grain_ = quadrature_difference(colored_noise_->deviation(), rounding);
+    else if (high_pass_.is_white && white_deviation_ > min_deviation &&
+             (!spectrum_ || spectrum_->ends_flat())) {
+        if (noise_by_height_) white_deviation_ = mean_deviation(*noise_by_height_, tiles_);
+        grain_ = quadrature_difference(white_deviation_, rounding);
+    }
+    if (grain_ > 0.0 && spectrum_) {
+        const NoiseSpectrum noise =
+            colored_noise_ ? *colored_noise_ : NoiseSpectrum::white(white_deviation_);
+        is_only_grain_ = spectrum_->excess_over(noise) < max_grain_excess;
+    }
+}
+
+void KernelErrorModel::interpret(Grain grain) {
+    stored_is_reference_ = grain == Grain::detail || (grain == Grain::automatic && is_only_grain_);
+    noise_ = stored_is_reference_ ? 0.0 : grain_;
+    if (stored_is_reference_ && !tiles_with_lines_.empty()) tiles_ = tiles_with_lines_;
+}
+
+void KernelErrorModel::restore() {
+    if (stored_is_reference_ || (blocks_ && grain_ == 0.0)) return;
+    const double rounding = root_mean_square_rounding(tiles_, coding_);
+    const double step = coding_.step();
+    // Quantization steps of at most one texel width have as much power in the highest frequencies
+    // as white noise. Wider steps have almost none.
+    const bool is_coarse_float = step == 0.0 && coding_.mantissa_bits < 20;
+    const double min_ratio = step > 0.0 ? 0.3 : is_coarse_float ? 0.0 : 1.25;
+    const bool steps_are_wide = step > 0.0 && high_pass_.deviation <= min_ratio * rounding;
+    const bool use_spectrum = colored_noise_ || (spectrum_ && high_pass_.is_white &&
+                                                 high_pass_.deviation > min_ratio * rounding);
+    if (!use_spectrum && step == 0.0) return;
+    const NoiseSpectrum noise = colored_noise_
+                                    ? *colored_noise_
+                                    : NoiseSpectrum::white(std::max(white_deviation_, rounding));
+    if (use_spectrum) {
+        const std::vector<double> gains = spectrum_->gains(noise);
+        const std::size_t pairs = (tiles_.size() + 1) / 2;
+        parallel_for(pairs, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const std::size_t count = std::min<std::size_t>(2, tiles_.size() - 2 * i);
+                remove_noise(std::span(tiles_).subspan(2 * i, count), *spectrum_, gains);
+            }
+        });
+        return;
+    }
+    parallel_for(tiles_.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            tiles_[i] = to_tile(remove_steps(to_image(tiles_[i]), step));
+            if (!steps_are_wide) continue;
+            const HeightTile smooth = smoothed(tiles_[i]);
+            // The remainders are smaller than half a step, so the limits preserve edges.
+            for (std::size_t texel = 0; texel < smooth.values.size(); ++texel) {
+                double& value = tiles_[i].values[texel];
+                value = std::clamp(smooth.values[texel], value - 0.5 * step, value + 0.5 * step);
+            }
+        }
+    });
+}
+
+void KernelErrorModel::add_line_noise(HeightTile& tile, Random& random) const {
+    const auto add = [&](double deviation, int lines, int between, int length, int along) {
+        for (int line = 0; line < lines && deviation > 0.0; ++line) {
+            const double offset = deviation * random.normal();
+            for (int i = 0; i < length; ++i)
+                tile.values[static_cast<std::size_t>(line * between + i * along)] += offset;
+        }
+    };
+    add(lines_.rows, tile.height, tile.width, tile.width, 1);
+    add(lines_.columns, tile.width, 1, tile.height, tile.width);
+}
+
+/// Returns a tile with new rounding, noise and outliers of the same distribution as in the map.
+Image KernelErrorModel::degraded(const HeightTile& tile, std::uint32_t seed) const {
+    Random random(seed);
+    HeightTile result = tile;
+    const double step = coding_.step();
+    // The shift of the codes separates the new steps from remainders of the stored ones.
+    const double shift = 0.382 * step;
+    std::vector<double> noise;
+    if (noise_ > 0.0 && colored_noise_) {
+        noise = noise_field(*colored_noise_, tile.width, seed);
+        const double share = noise_ / colored_noise_->deviation();
+        for (double& value : noise)
+            value *= share;
+    }
+    if (!stored_is_reference_) add_line_noise(result, random);
+    for (std::size_t i = 0; i < result.values.size(); ++i) {
+        double& value = result.values[i];
+        if (!noise.empty())
+            value += noise[i];
+        else if (noise_ > 0.0 && noise_by_height_)
+            value += noise_by_height_->at(value) * random.normal();
+        else if (noise_ > 0.0)
+            value += noise_ * random.normal();
+        if (!outliers_.empty() && random.between(0.0, 1.0) < outlier_share_) {
+            const double which = random.between(0.0, static_cast<double>(outliers_.size()));
+            value += outliers_[std::min(outliers_.size() - 1, static_cast<std::size_t>(which))];
+        }
+    }
+    if (blocks_) quantize_blocks(result, *blocks_, step);
+    for (double& value : result.values) {
+        if (step > 0.0)
+            value = step * std::floor((value + shift) / step + 0.5) - shift;
+        else
+            value +=
+                std::numbers::sqrt3 * coding_.rounding_deviation(value) * random.between(-1.0, 1.0);
+    }
+    return to_image(result);
+}
+
+void KernelErrorModel::degrade() {
+    const double step = coding_.step();
+    const double min_edge = std::max(3.0 * step, 6.0 * noise());
+    const glm::dvec2 scale = options_.strength / options_.texel;
+    edge_share_ = 0.0;
+    reference_normals_.assign(tiles_.size(), {});
+    degraded_.resize(tiles_.size());
+    std::vector<std::size_t> beside_edge(tiles_.size(), 0);
+    parallel_for(tiles_.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const TileSlopes reference =
+                reference_slopes(tiles_[i], min_edge, coding_.has_exact_levels);
+            Random random(static_cast<std::uint32_t>(i) ^ 0x6d697373U);
+            for (std::size_t texel = 0; texel < reference.slopes.size(); ++texel) {
+                glm::dvec2 slope = reference.slopes[texel] * scale;
+                if (unresolved_slope_ > 0.0) {
+                    const double along_x = random.normal();
+                    slope += scale * unresolved_slope_ * glm::dvec2(along_x, random.normal());
+                }
+                const bool is_beside_edge = reference.beside_edge[texel] != 0;
+                reference_normals_[i].push_back(
+                    is_beside_edge ? glm::dvec3(0.0)
+                                   : glm::normalize(glm::dvec3(-slope.x, slope.y, 1.0)));
+                beside_edge[i] += is_beside_edge ? 1 : 0;
+            }
+            degraded_[i] = degraded(tiles_[i], static_cast<std::uint32_t>(i));
+            if (destaircased_ && step > 0.0) degraded_[i] = remove_steps(degraded_[i], step);
+        }
+    });
+    double texels = 0.0;
+    for (std::size_t i = 0; i < tiles_.size(); ++i) {
+        edge_share_ += static_cast<double>(beside_edge[i]);
+        texels += static_cast<double>(reference_normals_[i].size());
+    }
+    edge_share_ /= texels;
+}
+
+KernelErrorModel::KernelErrorModel(std::span<const Image> parts, const HeightCoding& coding,
+                                   const BumpOptions& options, bool destaircased, Grain grain)
+    : options_(options), destaircased_(destaircased), coding_(coding) {
+    options_.wrap = Wrap::clamp;
+    options_.arithmetic = Arithmetic::float64;
+    tiles_.resize(parts.size());
+    std::transform(parts.begin(), parts.end(), tiles_.begin(), to_tile);
+    remove_blocks();
+    noise_by_height_ = detail::noise_by_height(tiles_);
+    if (!blocks_ && !noise_by_height_) remove_outliers();
+    detect_grain();
+    interpret(grain);
+    restore();
+    degrade();
+}
+
+KernelErrorModel KernelErrorModel::interpreted(Grain grain) const {
+    KernelErrorModel other = *this;
+    other.tiles_ = every_fourth(noisy_tiles_);
+    other.tiles_with_lines_ = every_fourth(tiles_with_lines_);
+    other.interpret(grain);
+    other.restore();
+    other.degrade();
+    return other;
+}
+
+KernelPrediction KernelErrorModel::predict_upper(const KernelPrediction& prediction) const {
+    if (!spectrum_ || coding_.has_exact_levels) return prediction;
+    KernelErrorModel upper = *this;
+    upper.tiles_ = every_fourth(tiles_);
+    upper.reference_normals_ = every_fourth(reference_normals_);
+    upper.degraded_ = every_fourth(degraded_);
+    const KernelPrediction sample = upper.predict(prediction.kernel, prediction.gaussian_radius);
+    const double rounding = root_mean_square_rounding(tiles_, coding_);
+    NoiseSpectrum noise = NoiseSpectrum::white(rounding);
+    if (noise_ > 0.0)
+        noise = colored_noise_ ? *colored_noise_
+                               : NoiseSpectrum::white(std::max(white_deviation_, rounding));
+    upper.unresolved_slope_ = spectrum_->unresolved_slope(noise);
+    if (!is_noisy() && !stored_is_reference_) {
+        // Fine detail can be blurred noise.
+        const NoiseSpectrum blurred =
+            spectrum_->max_blurred_noise(octave_deviations(every_fourth(tiles_)));
+        if (blurred.deviation() > 2.0 * rounding &&
+            (!max_noise_ || blurred.deviation() > max_noise_->deviation()))
+            upper.max_noise_ = blurred;
+    }
+    if (!stored_is_reference_ && upper.max_noise_ && upper.max_noise_->deviation() > 1.5 * noise_) {
+        upper.colored_noise_ = upper.max_noise_;
+        upper.noise_ = upper.max_noise_->deviation();
+    } else if (noise_ > 0.0 && !blocks_) {
+        const NoiseSpectrum hidden = spectrum_->hidden_detail(noise);
+        for (std::size_t i = 0; i < upper.tiles_.size(); ++i) {
+            std::vector<double>& values = upper.tiles_[i].values;
+            const std::vector<double> detail = noise_field(
+                hidden, upper.tiles_[i].width, static_cast<std::uint32_t>(i) ^ 0x68696464U);
+            std::transform(detail.begin(), detail.end(), values.begin(), values.begin(),
+                           std::plus<>());
+        }
+    }
+    upper.degrade();
+    const KernelPrediction upper_sample =
+        upper.predict(prediction.kernel, prediction.gaussian_radius);
+    KernelPrediction result = prediction;
+    for (double KernelPrediction::*error :
+         {&KernelPrediction::mean_degrees, &KernelPrediction::rms_degrees,
+          &KernelPrediction::p99_degrees}) {
+        const double added = quadrature_difference(upper_sample.*error, sample.*error);
+        result.*error = std::sqrt(result.*error * result.*error + added * added);
+    }
+    result.max_degrees = std::max(result.max_degrees, upper_sample.max_degrees);
+    return result;
+}
+
+double KernelErrorModel::degrees_of_noise(Kernel kernel, int radius,
+                                          const NoiseSpectrum& noise) const {
+    const glm::dvec2 scale = options_.strength / options_.texel;
+    const double variance =
+        slope_variance(gradient_kernel(kernel, radius), noise) * 0.5 * glm::dot(scale, scale);
+    double sum = 0.0;
+    double count = 0.0;
+    for (const std::vector<glm::dvec3>& normals : reference_normals_) {
+        for (const glm::dvec3& normal : normals) {
+            // A slope error along the slope turns the normal by z^2, and one across it by z. Large
+            // errors reduce the z of the normal themselves.
+            const double z2 = normal.z * normal.z;
+            sum += z2 * (1.0 + z2) * variance / (1.0 + z2 * variance);
+            count += normal.z > 0.0 ? 1.0 : 0.0;
+        }
+    }
+    return count > 0.0 ? std::sqrt(sum / count) * 180.0 / std::numbers::pi : 0.0;
+}
+
+KernelPrediction KernelErrorModel::predict(Kernel kernel, int radius) const {
+    BumpOptions options = options_;
+    options.kernel = kernel;
+    options.gaussian_radius = radius;
+    std::vector<SquaredAngles> part_errors(degraded_.size());
+    parallel_for(degraded_.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Report ignored;
+            const Image normals = normals_from_height(degraded_[i], options, ignored);
+            // Close to the border of a part, the kernel reads extrapolated heights.
+            const int margin = std::min(normals.width, normals.height) / 8;
+            part_errors[i] = squared_angles(normals, reference_normals_[i], margin);
+        }
+    });
+    SquaredAngles all;
+    for (const SquaredAngles& part : part_errors)
+        all.add(part);
+    return all.prediction(kernel, radius);
+}
+
+}  // namespace relief::detail

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The error model of kernels. It restores the map as it may have been before storage, adds the
+/// same kinds of degradation again, and measures the kernels on the result. Blocks of JPEG and
+/// offsets of rows or columns are removed first. It then restores the reference in one of three
+/// ways. Noise, and quantization that behaves like white noise, is removed by spectral subtraction.
+/// Quantization steps wider than texels are removed by destaircase(). Floats without noise remain
+/// unchanged. Heights are in the unit of the map, where 1.0 is white, and angles are in degrees.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "bump/height_tile.h"
+#include "portable_math.h"
+#include "relief/mesh/height_map.h"
+
+namespace relief::detail {
+
+/// The rounding of stored heights.
+struct HeightCoding {
+    HeightDepth depth;
+    int mantissa_bits = 24;  ///< Precision of floats without a step, 11 for half floats.
+    /// True for masks and maps of a few terraces, whose levels are exact heights.
+    bool has_exact_levels = false;
+
+    /// Returns the quantization step, or 0 if there is none.
+    [[nodiscard]] double step() const {
+        return depth.bits > 0 && !has_exact_levels ? depth.step : 0.0;
+    }
+    /// Returns the standard deviation of the rounding error of a height.
+    [[nodiscard]] double rounding_deviation(double height) const;
+};
+
+/// A reference surface and its degraded version, both from parts of a map.
+class KernelErrorModel {
+  public:
+    /// \param parts  one channel each
+    KernelErrorModel(std::span<const Image> parts, const HeightCoding& coding,
+                     const BumpOptions& options, bool destaircased, Grain grain);
+
+    /// Returns the model of the same map for another interpretation of its grain, from a sample of
+    /// the parts.
+    [[nodiscard]] KernelErrorModel interpreted(Grain grain) const;
+
+    /// Measures the errors of a kernel on the degraded parts.
+    [[nodiscard]] KernelPrediction predict(Kernel kernel, int radius) const;
+
+    /// Estimates the maximum error for properties that the map does not reveal: noise that hides or
+    /// resembles detail, and detail smaller than texels. The result is an estimate, not a bound.
+    ///
+    /// \param prediction  the result of predict()
+    [[nodiscard]] KernelPrediction predict_upper(const KernelPrediction& prediction) const;
+
+    /// Returns the angle in degrees by which noise changes the normals of a kernel, as an RMS.
+    [[nodiscard]] double degrees_of_noise(Kernel kernel, int radius,
+                                          const NoiseSpectrum& noise) const;
+
+    [[nodiscard]] const HeightCoding& coding() const { return coding_; }
+    /// Returns true if there is more noise than rounding can cause.
+    [[nodiscard]] bool is_noisy() const { return grain() > 4.0 * rounding_; }
+    /// Returns true if the noise was blurred: detail can have the same spectrum.
+    [[nodiscard]] bool is_noise_blurred() const { return is_noise_blurred_; }
+    /// Returns true if the map was stored as JPEG.
+    [[nodiscard]] bool has_blocks() const { return blocks_.has_value(); }
+    /// Returns the standard deviation of the noise without rounding.
+    [[nodiscard]] double noise() const { return stored_is_reference_ ? 0.0 : grain(); }
+    /// Returns the standard deviation of the grain, whether it counts as noise or as detail.
+    [[nodiscard]] double grain() const {
+        return std::sqrt(grain_ * grain_ + lines_.rows * lines_.rows +
+                         lines_.columns * lines_.columns);
+    }
+    /// Returns true if the map contains almost nothing but grain.
+    [[nodiscard]] bool is_only_grain() const { return is_only_grain_; }
+    /// Returns the share of isolated outliers.
+    [[nodiscard]] double outlier_share() const { return outlier_share_; }
+    /// Returns the share of texels beside a step edge. They have no reference normal.
+    [[nodiscard]] double edge_share() const { return edge_share_; }
+
+  private:
+    void remove_blocks();
+    void remove_outliers();
+    void detect_grain();
+    void interpret(Grain grain);
+    void restore();
+    void add_line_noise(HeightTile& tile, Random& random) const;
+    [[nodiscard]] Image degraded(const HeightTile& tile, std::uint32_t seed) const;
+    void degrade();
+
+    BumpOptions options_;
+    bool destaircased_ = false;
+    HeightCoding coding_;
+    double rounding_ = 0.0;                ///< RMS of the rounding_deviation() of the map.
+    std::vector<HeightTile> tiles_;        ///< The parts, which restore() turns into the reference.
+    std::vector<HeightTile> noisy_tiles_;  ///< Before restore(), without offsets of lines.
+    std::vector<HeightTile> tiles_with_lines_;  ///< With these offsets; empty if there are none.
+    std::optional<BlockQuantization> blocks_;   ///< Of maps that were stored as JPEG.
+    LineNoise lines_;
+    double grain_ = 0.0;  ///< Without offsets of lines.
+    double noise_ = 0.0;  ///< Like `grain_`; 0 if grain counts as detail.
+    std::optional<NoiseByHeight> noise_by_height_;
+    bool is_noise_blurred_ = false;
+    bool is_only_grain_ = false;
+    bool stored_is_reference_ = false;  ///< True if grain counts as detail.
+    std::optional<PowerSpectrum> spectrum_;
+    std::optional<NoiseSpectrum> colored_noise_;  ///< Noise and rounding, if they are not white.
+    std::optional<NoiseSpectrum> max_noise_;      ///< The strongest noise that the map allows.
+    double unresolved_slope_ = 0.0;               ///< RMS slope that texels do not resolve.
+    HighPassNoise high_pass_;
+    double white_deviation_ = 0.0;  ///< Standard deviation of white noise and rounding.
+    double outlier_share_ = 0.0;
+    std::vector<double> outliers_;  ///< The heights of the outliers.
+    double edge_share_ = 0.0;
+    std::vector<std::vector<glm::dvec3>> reference_normals_;  ///< 0 beside step edges.
+    std::vector<Image> degraded_;
+};
+
+/// Determines the rounding of the heights. \param parts  of one map
+HeightCoding coding_of(std::span<const Image> parts);
+
+/// Returns the widely_blurred_noise() of a map, if it has any. Of many parts, some suffice.
+std::optional<NoiseSpectrum> blurred_noise_of(std::span<const Image> parts,
+                                              const HeightCoding& coding);
+
+}  // namespace relief::detail
