@@ -141,8 +141,13 @@ TEST_F(MapKinds, AWrongKindIsAnErrorThatAssumeOverrides) {
 }
 
 TEST_F(MapKinds, ErrorsNameTheCommandThatConverts) {
-    refuses("relief-mesh material square.obj out/a.glb --normal height.png",
-            "height.png: is gray, like a height map or a mask, so it is not a normal map (convert "
+    const Image gray = read_image(place_ / "height.png", ImageUse::data);
+    Image colors_of_gray = make_image(gray.width, gray.height, 3, 8, ColorSpace::data);
+    for (std::size_t i = 0; i < colors_of_gray.sample_count(); ++i)
+        colors_of_gray.as<std::uint8_t>()[i] = gray.as<std::uint8_t>()[i / 3];
+    write_image(place_ / "gray.png", colors_of_gray);
+    refuses("relief-mesh material square.obj out/a.glb --normal gray.png",
+            "gray.png: is gray, like a height map or a mask, so it is not a normal map (convert "
             "it with relief-bake bump; --assume normal reads it anyway)");
     refuses("relief-bake bump stated-normal.png out/a.png",
             "stated-normal.png: is a normal map in tangent space, as its metadata say (convert it "
@@ -158,6 +163,21 @@ TEST_F(MapKinds, ErrorsNameTheCommandThatConverts) {
     EXPECT_EQ(place_.run("relief-bake heights photo.png out/a.png --assume height").exit_code, 2);
 }
 
+TEST_F(MapKinds, OneChannelIsNoNormalMapWhateverIsAssumed) {
+    for (const Reader& reader : readers) {
+        if (reader.kind != MapKind::normal) continue;
+        const std::string line = with_file(reader.line, "height.png");
+        const bool can_assume =
+            line.find("--detail") == std::string::npos && line.find("--exact") == std::string::npos;
+        for (const char* const assume : {"", " --assume normal"}) {
+            if (!can_assume && *assume != 0) continue;
+            refuses(line + assume,
+                    "height.png: has 1 channel, but normals need at least 2 (relief-bake bump "
+                    "converts height maps)");
+        }
+    }
+}
+
 TEST_F(MapKinds, MapsOfSceneFilesAreErrors) {
     struct Row {
         std::string map;  ///< In JSON.
@@ -170,7 +190,8 @@ TEST_F(MapKinds, MapsOfSceneFilesAreErrors) {
          "map in tangent space; --assume normal reads it anyway)",
          "normal"},
         // One channel cannot be read as normals.
-        {R"("normal_map": {"texture": "height.png"})", "relief-bake bump; --assume normal", ""},
+        {R"("normal_map": {"texture": "height.png"})", "has 1 channel, but normals need at least 2",
+         ""},
         {R"("bump_map": "normal.png")", "relief-bake heights; --assume height", "height"},
         {R"("bump_map": "stated-normal.png")", "as its metadata say", "height"},
         {R"("diffuse_texture": "stated-normal.png")", "give a color map; --assume color", "color"},

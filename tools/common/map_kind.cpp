@@ -84,8 +84,18 @@ Image read_sample(const std::filesystem::path& file) {
     return sample;
 }
 
+void check_normal_channels(const std::filesystem::path& file, int channels) {
+    if (channels > 1) return;
+    throw RefusedMap(failure(file, "has 1 channel, but normals need at least 2",
+                             "relief-bake bump converts height maps"),
+                     std::nullopt);
+}
+
 bool check_stated_kind(const MapInput& input, const AssumedKinds& assumed) {
-    if (std::ranges::count(assumed, input.accepted.front()) > 0) return true;
+    const MapKind wanted = input.accepted.front();
+    const bool wants_normals = wanted == MapKind::normal || wanted == MapKind::object_normal;
+    if (wants_normals && input.channels > 0) check_normal_channels(input.file, input.channels);
+    if (std::ranges::count(assumed, wanted) > 0) return true;
     const MapDescription stated = read_description(input.metadata);
     if (const auto wrong = stated_wrong_kind(input.accepted, stated)) throw refused(input, *wrong);
     return stated.kind.has_value();
@@ -102,7 +112,8 @@ void check_judged_kind(const MapInput& input, const ImageView& image) {
 std::map<std::string, std::string> check_kind(const std::filesystem::path& file,
                                               const std::vector<MapKind>& accepted,
                                               const AssumedKinds& assumed) {
-    const MapInput input = {file, accepted, read_image_info(file).metadata};
+    const ImageInfo info = read_image_info(file);
+    const MapInput input = {file, accepted, info.metadata, info.channels};
     if (!check_stated_kind(input, assumed) && is_judged_by_texels(accepted))
         check_judged_kind(input, read_sample(file));
     return input.metadata;

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,23 +33,29 @@ struct MapInput {
     /// The kinds that the command accepts. The first one is what --assume must name.
     std::vector<MapKind> accepted;
     std::map<std::string, std::string> metadata;
+    int channels = 0;  ///< 0 if they are checked elsewhere.
 };
 
 /// The error for a map of the wrong kind. The message names the remedy.
 class RefusedMap : public FileError {
   public:
-    RefusedMap(const FileError& error, MapKind wanted) : FileError(error), wanted_(wanted) {}
+    RefusedMap(const FileError& error, std::optional<MapKind> wanted)
+        : FileError(error), wanted_(wanted) {}
 
-    /// The kind that --assume must name to read the file anyway.
-    [[nodiscard]] MapKind wanted() const { return wanted_; }
+    /// The kind that --assume must name to read the file anyway. Absent if it cannot be read.
+    [[nodiscard]] std::optional<MapKind> wanted() const { return wanted_; }
 
   private:
-    MapKind wanted_;
+    std::optional<MapKind> wanted_;
 };
+
+/// Checks that a map of normals has at least two channels. Nothing overrides that.
+/// \throws RefusedMap if it has one
+void check_normal_channels(const std::filesystem::path& file, int channels);
 
 /// Checks the kind that the file states.
 /// \return whether it is settled, because the file states a kind or it is assumed
-/// \throws RefusedMap if it is not accepted
+/// \throws RefusedMap if it is not accepted, or has too few channels for normals
 bool check_stated_kind(const MapInput& input, const AssumedKinds& assumed);
 
 /// Reads eight evenly spaced bands of 32 rows, by which the kind is judged, or a small image as a

@@ -91,16 +91,10 @@ bool leaves_samples(const std::filesystem::path& file, const ImageInfo& info,
     return ImageRowReader(file).is_streamed();
 }
 
-void check_channels(const std::filesystem::path& file, int channels) {
-    if (channels > 1) return;
-    throw failure(file, "has 1 channel, but normals need at least 2",
-                  "relief-bake bump converts height maps");
-}
-
 void check_map_kind(const std::filesystem::path& file, const MapInputOptions& options,
                     const InputMap& map) {
     if (options.needs_z) require_z(file, map);
-    const MapInput input = {file, options.accepted, map.info.metadata};
+    const MapInput input = {file, options.accepted, map.info.metadata, map.info.channels};
     if (check_stated_kind(input, options.assumed) || !options.judges_texels) return;
     if (!map.image.empty()) return check_judged_kind(input, map.image);
     Image sample = read_sample(file);
@@ -137,7 +131,7 @@ InputMap open_normal_map(const std::filesystem::path& file, const MapInputOption
     InputMap map;
     bool has_new_z = false;
     map.info = read_image_info(file);
-    check_channels(file, map.info.channels);
+    check_normal_channels(file, map.info.channels);
     if (options.detects_green || !leaves_samples(file, map.info, max_memory)) {
         map.image =
             options.is_signed ? read_image(file, ImageUse::data) : read_normal_map_image(file);

@@ -165,7 +165,7 @@ SurfaceTexture HighTextures::texture(const std::filesystem::path& model,
 SurfaceNormalMap HighTextures::normal_map(const SurfaceTexture& texture, float scale,
                                           const AssumedKinds& assumed) const {
     const Image& map = *texture.image;
-    const MapInput input = {names_.at(&map), {MapKind::normal}, metadata_.at(&map)};
+    const MapInput input = {names_.at(&map), {MapKind::normal}, metadata_.at(&map), map.channels};
     if (!check_stated_kind(input, assumed)) check_judged_kind(input, map);
     const MapDescription stated = read_description(input.metadata);
     SurfaceNormalMap result{

@@ -394,7 +394,8 @@ void ViewerState::set_map(std::size_t material, TextureSlot slot, const std::fil
         try {
             tools::set_map(scene, material, slot, file, assumed);
         } catch (const RefusedMap& error) {
-            refused_edit_ = {material, slot, file, error.wanted()};
+            refused_edit_.reset();
+            if (error.wanted()) refused_edit_ = {material, slot, file, *error.wanted()};
             throw;
         }
     });
