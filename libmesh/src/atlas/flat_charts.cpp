@@ -19,6 +19,9 @@ namespace {
 constexpr double min_area_share = 1e-6;
 /// A projection with at most this stretch is as good as a flattened chart.
 constexpr double isometric_stretch = 1.001;
+/// The largest mean of the symmetric Dirichlet energy of a union of charts, relative to that of an
+/// isometric map.
+constexpr double max_union_energy = 1.02;
 
 std::array<glm::dvec2, 3> corners_of(const ChartMesh& chart, std::size_t index,
                                      std::span<const glm::dvec2> coordinates) {
@@ -53,6 +56,28 @@ class ChartFlattener {
         std::vector<std::vector<std::uint32_t>> parts = bisected(chart, face);
         std::reverse(parts.begin(), parts.end());
         flatten(std::move(parts), result);
+    }
+
+    /// Flattens a connected union of charts, without dividing it.
+    std::optional<FlatChart> flattened(std::vector<std::uint32_t> faces) {
+        members_.assign(faces);
+        FlatChart chart;
+        chart.mesh = chart_mesh(surface_, members_, std::move(faces));
+        if (try_flatten(chart)) return std::nullopt;
+        double energy = 0.0;
+        for (std::uint32_t i = 0; i < chart.mesh.faces.size(); ++i) {
+            const std::uint32_t face = chart.mesh.faces[i];
+            const Stretch stretch =
+                stretch_of(surface_, face, corners_of(chart.mesh, i, chart.coordinates));
+            const double largest = stretch.largest * stretch.largest;
+            const double smallest = stretch.smallest * stretch.smallest;
+            energy += surface_.areas[face] * (largest + smallest + 1.0 / largest + 1.0 / smallest);
+            chart.area += surface_.areas[face];
+        }
+        if (!(energy <= 4.0 * max_union_energy * chart.area)) return std::nullopt;
+        align_to_box(chart);
+        if (end_of_long(chart)) return std::nullopt;
+        return chart;
     }
 
   private:
@@ -91,7 +116,7 @@ class ChartFlattener {
             chart.coordinates = std::move(projection);
             return std::nullopt;
         }
-        std::vector<glm::dvec2> flat = flattened(surface_, chart.mesh, projection);
+        std::vector<glm::dvec2> flat = detail::flattened(surface_, chart.mesh, projection);
         const std::optional<std::uint32_t> problem =
             problem_of(chart.mesh, flat, limits_.max_stretch);
         if (!problem) {
@@ -265,7 +290,13 @@ std::vector<FlatChart> flat_charts(const AtlasSurface& surface, const Segmentati
     std::vector<FlatChart> result;
     for (std::vector<FlatChart>& charts : parts)
         std::move(charts.begin(), charts.end(), std::back_inserter(result));
-    return result;
+    return merged_charts(surface, members, limits, std::move(result));
+}
+
+std::optional<FlatChart> flattened_union(const AtlasSurface& surface, ChartMembers& members,
+                                         std::vector<std::uint32_t> faces,
+                                         const FlatnessLimits& limits, double total_area) {
+    return ChartFlattener(surface, members, limits, total_area).flattened(std::move(faces));
 }
 
 std::vector<FlatChart> divided_further(const AtlasSurface& surface, ChartMembers& members,

@@ -6,6 +6,8 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "atlas/charts.h"
@@ -38,10 +40,24 @@ void align_to_box(FlatChart& chart);
 /// Rounds coordinates to the lattice.
 std::vector<LatticePoint> on_lattice(std::span<const glm::dvec2> coordinates, double scale);
 
+/// Flattens all charts, and merges small ones.
 /// \param members  of the charts of the segmentation, all with part 0
 /// \return in a fixed order. Each chart is injective on the lattice and within the limits
 std::vector<FlatChart> flat_charts(const AtlasSurface& surface, const Segmentation& segmentation,
                                    ChartMembers& members, const FlatnessLimits& limits);
+
+/// Flattens a connected union of charts.
+/// \param faces  ascending, of one chart of `members`. \param total_area  of the surface
+/// \return none if it overlaps itself, exceeds the limits or is distorted much more than charts
+///         are
+std::optional<FlatChart> flattened_union(const AtlasSurface& surface, ChartMembers& members,
+                                         std::vector<std::uint32_t> faces,
+                                         const FlatnessLimits& limits, double total_area);
+
+/// Merges small charts with neighbors as long as the unions can be flattened. The number of
+/// attempts is bounded, so that the time stays linear.
+std::vector<FlatChart> merged_charts(const AtlasSurface& surface, ChartMembers& members,
+                                     const FlatnessLimits& limits, std::vector<FlatChart> charts);
 
 /// Divides a chart of more than one face at `face`, an index of the chart.
 std::vector<FlatChart> divided_further(const AtlasSurface& surface, ChartMembers& members,

@@ -3,6 +3,7 @@
 /// Flattens a chart: coordinates in the plane for its vertices, in the unit of the surface.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -30,7 +31,10 @@ struct ChartMesh {
 class ChartMembers {
   public:
     explicit ChartMembers(std::vector<std::uint32_t> chart)
-        : chart_(std::move(chart)), index_(chart_.size()), part_(chart_.size(), 0) {}
+        : chart_(std::move(chart)), index_(chart_.size()), part_(chart_.size(), 0) {
+        for (const std::uint32_t each : chart_)
+            next_chart_ = std::max(next_chart_, each + 1);
+    }
 
     /// Makes `faces`, which belong to one chart, a part of it.
     void assign(std::span<const std::uint32_t> faces) {
@@ -39,6 +43,12 @@ class ChartMembers {
             index_[faces[i]] = i;
             part_[faces[i]] = part;
         }
+    }
+    /// Makes the faces of several charts one chart. assign() is due next; no other thread may work.
+    void join(std::span<const std::uint32_t> faces) {
+        const std::uint32_t chart = next_chart_++;
+        for (const std::uint32_t face : faces)
+            chart_[face] = chart;
     }
     [[nodiscard]] bool are_together(std::uint32_t a, std::uint32_t b) const {
         return chart_[a] == chart_[b] && part_[a] == part_[b];
@@ -50,6 +60,7 @@ class ChartMembers {
     std::vector<std::uint32_t> chart_;
     std::vector<std::uint32_t> index_;
     std::vector<std::uint32_t> part_;
+    std::uint32_t next_chart_ = 0;
     std::atomic<std::uint32_t> last_part_{0};  ///< Only whether numbers are equal matters.
 };
 

@@ -193,6 +193,36 @@ TEST(Unwrap, KeepsTheDensityOfASphere) {
     EXPECT_GT(unwrapped.stats.used, 0.5);
 }
 
+/// A flat square of 2 * side * side triangles with a spherical bump in each of 7 x 7 fields.
+Mesh dented_plate(std::uint32_t side) {
+    Mesh mesh;
+    for (std::uint32_t y = 0; y <= side; ++y) {
+        for (std::uint32_t x = 0; x <= side; ++x) {
+            const glm::dvec2 at(7.0 * x / side, 7.0 * y / side);
+            const double radius = glm::length(at - glm::floor(at) - 0.5);
+            const double height = radius < 0.3 ? std::sqrt(0.0901 - radius * radius) : 0.0;
+            mesh.positions.emplace_back(at.x, at.y, height);
+        }
+    }
+    for (std::uint32_t y = 0; y < side; ++y) {
+        for (std::uint32_t x = 0; x < side; ++x) {
+            const std::uint32_t a = y * (side + 1) + x;
+            mesh.triangles.emplace_back(a, a + 1, a + side + 2);
+            mesh.triangles.emplace_back(a, a + side + 2, a + side + 1);
+        }
+    }
+    return mesh;
+}
+
+// Parts of charts that could not be flattened become parts of their neighbors.
+TEST(Unwrap, MergesSmallCharts) {
+    const Unwrapped unwrapped = unwrap(dented_plate(140));
+    EXPECT_EQ(broken_promise(unwrapped), "");
+    EXPECT_LE(unwrapped.stats.charts, 40U);
+    EXPECT_LE(unwrapped.stats.small_charts, 2U);
+    EXPECT_LT(unwrapped.stats.stretch, 1.02);
+}
+
 // The right angles of a texture must not become left ones: bakers and tangent spaces depend on it.
 TEST(Unwrap, MirrorsNoChart) {
     Mesh torus = make_torus(0.4F, 48, 24);

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "atlas/flat_charts.h"
+#include "parallel.h"
+#include "progress_stage.h"
+
+namespace relief::detail {
+namespace {
+
+/// Only charts below this share of the area look for a neighbor.
+constexpr double max_area_share = 0.02;
+/// The share of the common border in the shorter perimeter below which charts do not merge.
+constexpr double min_border_share = 0.15;
+/// The box of a union may be larger than both boxes by this factor: long and branched charts waste
+/// space in the map.
+constexpr double max_box_growth = 1.25;
+/// The number of failures after which a chart stays as it is.
+constexpr int max_failures = 3;
+/// The number of faces of all unions that are tried, per face of the surface.
+constexpr double max_tried_faces = 3.0;
+constexpr int max_rounds = 64;
+
+double box_area(const FlatChart& chart) {
+    return chart.size.x * chart.size.y;
+}
+
+/// Works in rounds: each chart is in one pair at most, and the unions of all pairs are flattened in
+/// parallel.
+class ChartMerger {
+  public:
+    ChartMerger(const AtlasSurface& surface, ChartMembers& members, const FlatnessLimits& limits,
+                std::vector<FlatChart> charts)
+        : surface_(surface),
+          members_(members),
+          limits_(limits),
+          charts_(std::move(charts)),
+          chart_of_(surface.faces.size()),
+          perimeters_(charts_.size()),
+          failures_(charts_.size(), 0),
+          faces_left_(max_tried_faces * static_cast<double>(surface.faces.size())) {
+        for (std::uint32_t chart = 0; chart < charts_.size(); ++chart) {
+            total_area_ += charts_[chart].area;
+            adopt(chart);
+        }
+        for (Corner corner = 0; corner < surface.opposite.size(); ++corner) {
+            const Corner other = surface.opposite[corner];
+            if (other == no_corner || other < corner || surface.is_border[corner]) continue;
+            if (chart_of_[corner / 3] != chart_of_[other / 3]) seams_.push_back(corner);
+        }
+    }
+
+    std::vector<FlatChart> merged() {
+        for (int round = 0; round < max_rounds; ++round) {
+            check_cancelled();
+            const std::vector<Pair> pairs = selected(candidates());
+            if (pairs.empty()) break;
+            merge(pairs);
+        }
+        std::erase_if(charts_, [](const FlatChart& chart) { return chart.mesh.faces.empty(); });
+        return std::move(charts_);
+    }
+
+  private:
+    /// Two neighbors, a < b.
+    struct Pair {
+        std::uint32_t a, b;
+        double length;       ///< Of the common border.
+        double share = 0.0;  ///< Of the common border in the shorter perimeter.
+    };
+
+    /// Renews what is known of a chart.
+    void adopt(std::uint32_t chart) {
+        const ChartMesh& mesh = charts_[chart].mesh;
+        for (const std::uint32_t face : mesh.faces)
+            chart_of_[face] = chart;
+        perimeters_[chart] = 0.0;
+        for (Corner corner = 0; corner < mesh.opposite.size(); ++corner)
+            if (mesh.opposite[corner] == no_corner)
+                perimeters_[chart] += surface_.edge_length(3 * mesh.faces[corner / 3] + corner % 3);
+    }
+
+    [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> charts_at(Corner seam) const {
+        return std::minmax({chart_of_[seam / 3], chart_of_[surface_.opposite[seam] / 3]});
+    }
+
+    /// Returns the pairs that may merge, those with the largest share first.
+    std::vector<Pair> candidates() {
+        std::erase_if(seams_, [&](Corner seam) {
+            const auto [a, b] = charts_at(seam);
+            return a == b;
+        });
+        std::vector<Pair> borders;
+        borders.reserve(seams_.size());
+        for (const Corner seam : seams_) {
+            const auto [a, b] = charts_at(seam);
+            borders.push_back({a, b, surface_.edge_length(seam)});
+        }
+        // Stable, so that lengths are added in a fixed order.
+        std::stable_sort(borders.begin(), borders.end(), [](const Pair& x, const Pair& y) {
+            return x.a != y.a ? x.a < y.a : x.b < y.b;
+        });
+        std::vector<Pair> pairs;
+        for (const Pair& border : borders) {
+            if (pairs.empty() || pairs.back().a != border.a || pairs.back().b != border.b)
+                pairs.push_back(border);
+            else
+                pairs.back().length += border.length;
+        }
+        std::erase_if(pairs, [&](Pair& pair) {
+            pair.share = pair.length / std::min(perimeters_[pair.a], perimeters_[pair.b]);
+            const std::uint32_t small = smaller(pair);
+            return pair.share < min_border_share || failures_[small] >= max_failures ||
+                   charts_[small].area > max_area_share * total_area_ ||
+                   std::binary_search(failed_.begin(), failed_.end(), std::pair(pair.a, pair.b));
+        });
+        std::stable_sort(pairs.begin(), pairs.end(),
+                         [](const Pair& x, const Pair& y) { return x.share > y.share; });
+        return pairs;
+    }
+    [[nodiscard]] std::uint32_t smaller(const Pair& pair) const {
+        return charts_[pair.a].area < charts_[pair.b].area ? pair.a : pair.b;
+    }
+
+    /// Returns pairs without a common chart.
+    std::vector<Pair> selected(const std::vector<Pair>& candidates) {
+        std::vector<bool> is_used(charts_.size(), false);
+        std::vector<Pair> result;
+        for (const Pair& pair : candidates) {
+            const auto faces = static_cast<double>(charts_[pair.a].mesh.faces.size() +
+                                                   charts_[pair.b].mesh.faces.size());
+            if (is_used[pair.a] || is_used[pair.b] || faces > faces_left_) continue;
+            is_used[pair.a] = is_used[pair.b] = true;
+            faces_left_ -= faces;
+            result.push_back(pair);
+        }
+        return result;
+    }
+
+    void merge(const std::vector<Pair>& pairs) {
+        std::vector<std::vector<std::uint32_t>> faces(pairs.size());
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            const std::vector<std::uint32_t>& a = charts_[pairs[i].a].mesh.faces;
+            const std::vector<std::uint32_t>& b = charts_[pairs[i].b].mesh.faces;
+            std::merge(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(faces[i]));
+            members_.join(faces[i]);
+        }
+        std::vector<std::optional<FlatChart>> unions(pairs.size());
+        parallel_for(pairs.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                check_cancelled();
+                unions[i] =
+                    flattened_union(surface_, members_, std::move(faces[i]), limits_, total_area_);
+            }
+        });
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            FlatChart& a = charts_[pairs[i].a];
+            FlatChart& b = charts_[pairs[i].b];
+            if (!unions[i] || box_area(*unions[i]) > max_box_growth * (box_area(a) + box_area(b))) {
+                ++failures_[smaller(pairs[i])];
+                failed_.emplace_back(pairs[i].a, pairs[i].b);
+                continue;
+            }
+            a = std::move(*unions[i]);
+            b = FlatChart();
+            adopt(pairs[i].a);
+        }
+        std::sort(failed_.begin(), failed_.end());
+    }
+
+    const AtlasSurface& surface_;
+    ChartMembers& members_;
+    const FlatnessLimits& limits_;
+    std::vector<FlatChart> charts_;        ///< Without faces if it is part of another one.
+    std::vector<std::uint32_t> chart_of_;  ///< For each face.
+    std::vector<double> perimeters_;       ///< Of the charts.
+    std::vector<int> failures_;            ///< Of a chart as the smaller one of a pair.
+    std::vector<Corner> seams_;            ///< One of the two edges between two charts each.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> failed_;  ///< Ascending.
+    double total_area_ = 0.0;
+    double faces_left_;  ///< The number of faces of unions that may still be tried.
+};
+
+}  // namespace
+
+std::vector<FlatChart> merged_charts(const AtlasSurface& surface, ChartMembers& members,
+                                     const FlatnessLimits& limits, std::vector<FlatChart> charts) {
+    return ChartMerger(surface, members, limits, std::move(charts)).merged();
+}
+
+}  // namespace relief::detail
