@@ -57,6 +57,24 @@ std::array<glm::dvec3, 2> axes_of(const glm::dvec3& normal) {
     return {x, glm::cross(normal, x)};
 }
 
+/// Solves L D L^T x = b for both coordinates. \param lower L below its diagonal of ones
+void solve(const Eigen::SparseMatrix<double>& lower, const Eigen::VectorXd& diagonal,
+           std::span<glm::dvec2> x) {
+    using Entry = Eigen::SparseMatrix<double>::InnerIterator;
+    const Eigen::Index count = lower.cols();
+    for (Eigen::Index column = 0; column < count; ++column) {
+        const glm::dvec2 value = x[static_cast<std::size_t>(column)];
+        for (Entry entry(lower, column); entry; ++entry)
+            x[static_cast<std::size_t>(entry.row())] -= entry.value() * value;
+    }
+    for (Eigen::Index column = count - 1; column >= 0; --column) {
+        glm::dvec2 value = x[static_cast<std::size_t>(column)] / diagonal(column);
+        for (Entry entry(lower, column); entry; ++entry)
+            value -= entry.value() * x[static_cast<std::size_t>(entry.row())];
+        x[static_cast<std::size_t>(column)] = value;
+    }
+}
+
 }  // namespace
 
 ChartMesh chart_mesh(const AtlasSurface& surface, const ChartMembers& members,
@@ -143,11 +161,15 @@ std::vector<glm::dvec2> flattened(const AtlasSurface& surface, const ChartMesh& 
     check_cancelled();
     const Eigen::SimplicialLDLT<Matrix> solver(matrix);
     if (solver.info() != Eigen::Success) return start;
-    Eigen::MatrixX2d right(vertex_count, 2);
+    const Matrix& factor = solver.matrixL().nestedExpression();
+    const auto& order = solver.permutationP().indices();
+    const Eigen::VectorXd diagonal_factor = solver.vectorD();
+    std::vector<glm::dvec2> right(chart.positions.size());
+    std::vector<glm::dvec2> permuted(chart.positions.size());
     std::vector<glm::dvec2> result = std::move(start);
     for (int round = 0; round < iterations; ++round) {
         check_cancelled();
-        right.setZero();
+        std::fill(right.begin(), right.end(), glm::dvec2(0.0));
         for (std::size_t i = 0; i < face_count; ++i) {
             const std::array<glm::dvec2, 3> x = triangles[i].corners();
             double cosine = 0.0;
@@ -172,18 +194,16 @@ std::vector<glm::dvec2> flattened(const AtlasSurface& surface, const ChartMesh& 
                 const auto& v = chart.vertices[i];
                 const glm::dvec2 e = weights[i][k] * (x[k] - x[(k + 1) % 3]);
                 const glm::dvec2 turned(cosine * e.x - sine * e.y, sine * e.x + cosine * e.y);
-                const auto a = static_cast<Eigen::Index>(v[static_cast<glm::length_t>(k)]);
-                const auto b =
-                    static_cast<Eigen::Index>(v[static_cast<glm::length_t>((k + 1) % 3)]);
-                right(a, 0) += turned.x;
-                right(a, 1) += turned.y;
-                right(b, 0) -= turned.x;
-                right(b, 1) -= turned.y;
+                right[v[static_cast<glm::length_t>(k)]] += turned;
+                right[v[static_cast<glm::length_t>((k + 1) % 3)]] -= turned;
             }
         }
-        const Eigen::MatrixX2d solution = solver.solve(right);
+        // Both coordinates at once: reading the factor costs most.
         for (Eigen::Index v = 0; v < vertex_count; ++v)
-            result[static_cast<std::size_t>(v)] = {solution(v, 0), solution(v, 1)};
+            permuted[static_cast<std::size_t>(order(v))] = right[static_cast<std::size_t>(v)];
+        solve(factor, diagonal_factor, permuted);
+        for (Eigen::Index v = 0; v < vertex_count; ++v)
+            result[static_cast<std::size_t>(v)] = permuted[static_cast<std::size_t>(order(v))];
     }
     return result;
 }
