@@ -6,13 +6,13 @@
 #include <cmath>
 #include <utility>
 
+#include "atlas/flat_charts.h"
 #include "atlas/flatten.h"
 
 namespace relief::detail {
 namespace {
 
 constexpr double small_chart_texels = 64.0;
-constexpr double min_area_share = 1e-6;
 
 /// The value below which a share of the weights lies. \param values with weights, ascending
 double quantile(std::span<const std::pair<double, double>> values, double share) {
@@ -114,7 +114,7 @@ AtlasStats stats_of(const AtlasSurface& surface, std::span<const glm::vec2> corn
     }
     if (!(area > 0.0)) return stats;
     for (const Measured& each : measured)
-        if (surface.areas[each.face] >= min_area_share * area)
+        if (surface.areas[each.face] >= min_area_share(surface.faces.size()) * area)
             stats.max_anisotropy = std::max(stats.max_anisotropy, each.anisotropy);
     double map_area = 0.0;
     for (const double texels : chart_texels) {

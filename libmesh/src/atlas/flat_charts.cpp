@@ -15,8 +15,6 @@
 namespace relief::detail {
 namespace {
 
-/// Triangles below this share of the whole area may be stretched: their corners are rounded.
-constexpr double min_area_share = 1e-6;
 /// A projection with at most this stretch is as good as a flattened chart.
 constexpr double isometric_stretch = 1.001;
 /// The largest mean of the symmetric Dirichlet energy of a union of charts, relative to that of an
@@ -43,7 +41,7 @@ class ChartFlattener {
         : surface_(surface),
           members_(members),
           limits_(limits),
-          min_area_(min_area_share * total_area) {}
+          min_area_(min_area_share(surface.faces.size()) * total_area) {}
 
     void flatten(std::vector<std::uint32_t> faces, std::vector<FlatChart>& result) {
         std::vector<std::vector<std::uint32_t>> waiting;

@@ -4,6 +4,8 @@
 /// those for which that fails.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
@@ -33,6 +35,12 @@ struct FlatnessLimits {
     /// Longer charts are divided, because the map would have to shrink for them.
     double max_side = std::numeric_limits<double>::infinity();
 };
+
+/// Triangles below this share of the whole area may be stretched, because their corners are
+/// rounded. A millionth, but at most a tenth of the mean triangle.
+inline double min_area_share(std::size_t face_count) {
+    return std::min(1e-6, 0.1 / static_cast<double>(face_count));
+}
 
 /// Rotates a chart so that the area of its box is smallest, and shifts the box to the origin.
 void align_to_box(FlatChart& chart);
