@@ -24,8 +24,9 @@ struct UnwrapOptions {
     /// map. Bilinear lookups in mip level k need 3 * 2^k.
     int padding = 4;
     /// The largest permitted ratio, above 1, of the two singular values of a triangle, and of its
-    /// area in the map to its area on the surface. Triangles below a millionth of the whole area
-    /// may exceed it, because their corners are rounded.
+    /// area in the map to its area on the surface. Triangles below a millionth of the whole area,
+    /// or below a tenth of the mean one if that is less, may exceed it, because their corners are
+    /// rounded.
     double max_stretch = 4.0;
     bool keep_seams = false;       ///< The seams of existing texture coordinates stay seams.
     bool split_materials = false;  ///< No chart has triangles of two materials.
@@ -74,7 +75,7 @@ struct AtlasStats {
     /// The L2 stretch of [Sander et al. 2001], at least 1 for maps that keep the whole area.
     double stretch = 0.0;
     double mean_anisotropy = 0.0;  ///< The mean ratio of both singular values, at least 1.
-    double max_anisotropy = 0.0;   ///< Of triangles above a millionth of the area.
+    double max_anisotropy = 0.0;   ///< Of the triangles that UnwrapOptions::max_stretch limits.
     double seam_length = 0.0;      ///< Of the borders of charts, in units of the mesh.
     /// The seam length divided by the root of the area.
     double relative_seam_length = 0.0;
