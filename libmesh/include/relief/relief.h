@@ -270,7 +270,7 @@ typedef struct relief_atlas_stats {
     double used;             ///< The share of the map that charts cover.
     double texels_per_unit;  ///< The mean.
     double stretch;          ///< L2 stretch, at least 1 for maps that keep the whole area.
-    double max_anisotropy;   ///< Of triangles above a millionth of the area.
+    double max_anisotropy;   ///< Of the triangles that max_stretch limits.
     double seam_length;      ///< In units of the mesh.
     double area;             ///< Of the surface, in square units of the mesh.
 } relief_atlas_stats;
