@@ -46,7 +46,7 @@ py::dict py_unwrap(const MeshObject& mesh, std::pair<int, int> size, int padding
                    std::optional<double> texels_per_unit, double max_stretch,
                    std::optional<double> split_hard_degrees, bool split_materials, bool keep_seams,
                    const py::object& densities, bool stack, bool repack, bool fix_mirrored,
-                   const FindingList& report) {
+                   int udim, const FindingList& report) {
     Report findings;
     UnwrapOptions options;
     options.size = {size.first, size.second};
@@ -67,6 +67,7 @@ py::dict py_unwrap(const MeshObject& mesh, std::pair<int, int> size, int padding
     options.stack = stack;
     options.repack = repack;
     options.unmirror = fix_mirrored;
+    options.tiles = udim;
     Unwrapped unwrapped;
     FramedMesh result;
     without_gil([&] {
@@ -107,14 +108,14 @@ py::dict py_measure_texcoords(const MeshObject& mesh, std::pair<int, int> size,
 void add_unwrap(py::module_& module) {
     using py::arg;
     const py::object none = py::none();
-    module.def("unwrap", &py_unwrap, arg("mesh"), py::kw_only(),
-               arg("size") = std::pair(2048, 2048), arg("padding") = 4, arg("align") = 1,
-               arg("texels_per_unit") = none, arg("max_stretch") = 4.0,
-               arg("split_hard_degrees") = none, arg("split_materials") = false,
-               arg("keep_seams") = false, arg("densities") = none, arg("stack") = false,
-               arg("repack") = false, arg("fix_mirrored") = false, arg("report") = none,
-               "Compute texture coordinates without overlaps.\n\n"
-               "See relief.unwrap() for the result.");
+    module.def(
+        "unwrap", &py_unwrap, arg("mesh"), py::kw_only(), arg("size") = std::pair(2048, 2048),
+        arg("padding") = 4, arg("align") = 1, arg("texels_per_unit") = none,
+        arg("max_stretch") = 4.0, arg("split_hard_degrees") = none, arg("split_materials") = false,
+        arg("keep_seams") = false, arg("densities") = none, arg("stack") = false,
+        arg("repack") = false, arg("fix_mirrored") = false, arg("udim") = 1, arg("report") = none,
+        "Compute texture coordinates without overlaps.\n\n"
+        "See relief.unwrap() for the result.");
     module.def(
         "measure_texcoords", &py_measure_texcoords, arg("mesh"), arg("size"), py::kw_only(),
         arg("report") = none,

@@ -198,6 +198,7 @@ def unwrap(
     stack: bool = False,
     repack: bool = False,
     fix_mirrored: bool = False,
+    udim: int = 1,
     report: Report | None = None,
 ) -> Unwrapped:
     """Compute texture coordinates for a map of `size` (width, height), without overlapping or mirrored triangles.
@@ -207,15 +208,15 @@ def unwrap(
     scales; `split_hard_degrees` puts seams at sharper edges where they separate charts. Tangents are removed, and
     old texture coordinates matter only with `keep_seams` and `repack`. `densities`, float32 (m,), are the relative
     densities of texels of the triangles. With `stack`, equal parts share texels. With `repack`, the old charts are
-    only packed anew; `fix_mirrored` reflects mirrored ones. Every mesh with a triangle has a result; what is cut or
-    set aside is appended to the list `report`.
+    only packed anew; `fix_mirrored` reflects mirrored ones. `udim` is the number of maps of this size, as tiles.
+    Every mesh with a triangle has a result; what is cut or set aside is appended to the list `report`.
 
     Raises InvalidInput for wrong options, or if the charts do not fit into the map, and TypeError for wrong types.
     """
     return Unwrapped(**_relief.unwrap(
         mesh, size=size, padding=padding, align=align, texels_per_unit=texels_per_unit, max_stretch=max_stretch,
         split_hard_degrees=split_hard_degrees, split_materials=split_materials, keep_seams=keep_seams, densities=densities,
-        stack=stack, repack=repack, fix_mirrored=fix_mirrored, report=report))
+        stack=stack, repack=repack, fix_mirrored=fix_mirrored, udim=udim, report=report))
 
 
 class ToolError(Error):

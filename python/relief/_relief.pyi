@@ -322,6 +322,7 @@ def unwrap(
     stack: bool = False,
     repack: bool = False,
     fix_mirrored: bool = False,
+    udim: int = 1,
     report: Report | None = None,
 ) -> dict[str, Any]: ...
 def measure_texcoords(mesh: Mesh, size: tuple[int, int], *, report: Report | None = None) -> dict[str, Any]: ...

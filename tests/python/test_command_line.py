@@ -185,6 +185,9 @@ class Unwrapping(CommandLineCase):
         out = self.folder / "out.obj"
         report = relief.run("relief-mesh", "unwrap", DATA / "urn-low.obj", out, "--size", "256", "--repack", report=True)
         self.assertEqual(relief.unwrap(mesh, size=(256, 256), repack=True).stats, report["atlas"])
+        tiles = relief.unwrap(mesh, size=(64, 64), udim=2).mesh.texcoords[:, 0]
+        self.assertGreater(tiles.max(), 1.0)
+        self.assertLessEqual(tiles.max(), 2.0)
 
     def test_measured_texcoords(self):
         file = DATA / "urn-low.obj"

@@ -19,6 +19,7 @@
 #include "hard_cases/random_meshes.h"
 #include "support/hard_meshes.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 
 namespace relief {
@@ -480,6 +481,16 @@ TEST(Unwrap, SplitsAtEveryEdgeThatIsNotFlat) {
     for (glm::vec3& p : square.positions)
         p = {0.1F * p.x, 0.7F * p.x + 0.3F * p.y, 0.9F * p.y};  // Rounded, so not exactly flat.
     EXPECT_EQ(unwrap(square, options).stats.charts, 1U);
+}
+
+// All triangles are below a millionth of the area. Projected caps would have an L2 stretch of 1.1.
+TEST_LABELS(slow);
+TEST(Unwrap, FlattensMoreThanAMillionTriangles) {
+    const Unwrapped unwrapped = unwrap(make_sphere(1000, 600));
+    EXPECT_GT(unwrapped.chart.size(), 1'100'000U);
+    EXPECT_LT(unwrapped.stats.stretch, 1.005);
+    EXPECT_GT(unwrapped.stats.max_anisotropy, 1.0);
+    EXPECT_LT(unwrapped.stats.max_anisotropy, 4.0);
 }
 
 TEST(Unwrap, RefusesOptionsOutOfRange) {
