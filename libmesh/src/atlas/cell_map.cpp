@@ -7,10 +7,6 @@
 namespace relief::detail {
 namespace {
 
-std::size_t word_count(int bits) {
-    return (static_cast<std::size_t>(bits) + word_bits - 1) / word_bits;
-}
-
 /// Loops over words have blocks of a fixed size.
 constexpr std::size_t word_block = 4;
 

@@ -9,10 +9,6 @@
 namespace relief::detail {
 namespace {
 
-std::size_t word_count(int bits) {
-    return (static_cast<std::size_t>(bits) + word_bits - 1) / word_bits;
-}
-
 /// Rows of bits in which a chart is drawn.
 class Canvas {
   public:

@@ -60,6 +60,10 @@ std::vector<RowRun> lower_border(const CellMask& mask);
 using BitWord = std::uint64_t;
 inline constexpr int word_bits = 64;
 
+inline std::size_t word_count(int bits) {
+    return (static_cast<std::size_t>(bits) + word_bits - 1) / word_bits;
+}
+
 /// Sets the bits [begin, end), at least one.
 void set_run(BitWord* words, int begin, int end);
 
