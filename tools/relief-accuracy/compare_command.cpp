@@ -179,14 +179,14 @@ std::vector<std::string> above_limits(const ReportComparison& comparison,
     return lines;
 }
 
-Json json_of(const TimeRatio& times) {
+Json comparison_json(const TimeRatio& times) {
     return {{"subject", subject_of(times)}, {"threads", times.on_all_threads ? "all" : "one"},
             {"methods", times.methods},     {"ratio", times.ratio.median},
             {"low", times.ratio.low},       {"high", times.ratio.high},
             {"verdict", verdict_of(times)}};
 }
 
-Json json_of(const MethodChange& change) {
+Json comparison_json(const MethodChange& change) {
     return {{"experiment", change.experiment},
             {"chart", change.chart},
             {"method", change.method},
@@ -200,7 +200,7 @@ Json json_of(const MethodChange& change) {
 
 template <typename Change>
 Json array_of(const std::vector<Change>& changes) {
-    return json_list(changes, [](const Change& change) { return json_of(change); });
+    return json_list(changes, [](const Change& change) { return comparison_json(change); });
 }
 
 void add_machines(Summary& summary, const ComparedReports& compared) {
