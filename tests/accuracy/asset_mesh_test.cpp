@@ -255,7 +255,7 @@ TEST(AssetMesh, IsTimedAndRecommendedByTime) {
     EXPECT_THAT(found(own, "max").cost.one_thread.value().rounds, SizeIs(3));
     EXPECT_EQ(own.recommendation.method, std::nullopt);
     EXPECT_THAT(own.recommendation.description,
-                HasSubstr("no method is within 1e-06 degrees (RMS)"));
+                HasSubstr("no method is within 1e-06 degrees (99 %)"));
 }
 
 TEST(AssetMesh, CanBeCancelled) {

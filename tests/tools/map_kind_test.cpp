@@ -142,9 +142,9 @@ TEST_F(MapKinds, AWrongKindIsAnErrorThatAssumeOverrides) {
 
 TEST_F(MapKinds, ErrorsNameTheCommandThatConverts) {
     const Image gray = read_image(place_ / "height.png", ImageUse::data);
-    Image colors_of_gray = make_image(gray.width, gray.height, 3, 8, ColorSpace::data);
+    Image colors_of_gray = make_image(gray.width, gray.height, 3, 16, ColorSpace::data);
     for (std::size_t i = 0; i < colors_of_gray.sample_count(); ++i)
-        colors_of_gray.as<std::uint8_t>()[i] = gray.as<std::uint8_t>()[i / 3];
+        colors_of_gray.as<std::uint16_t>()[i] = gray.as<std::uint16_t>()[i / 3];
     write_image(place_ / "gray.png", colors_of_gray);
     refuses("relief-mesh material square.obj out/a.glb --normal gray.png",
             "gray.png: is gray, like a height map or a mask, so it is not a normal map (convert "

@@ -325,7 +325,7 @@ TEST_F(Verify, AnErrorAboveTheLimitIsAProblem) {
     surface = check("out/map.png", "--max-error 0.01 --max-error-kind p99 --strict", &exit_code);
     EXPECT_EQ(exit_code, 3);
     EXPECT_THAT(surface["problems"][0].get<std::string>(),
-                HasSubstr("more than the limit of 0.01 degrees (99 % of the texels)"));
+                HasSubstr("more than the limit of 0.01 degrees (99 %)"));
 }
 
 TEST_F(Verify, InvertedGreenIsReportedAndItsRemedyWorks) {

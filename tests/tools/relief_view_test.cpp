@@ -514,7 +514,7 @@ TEST(ViewRefusal, StatesTheReasonAndWritesNoFile) {
         {{"--explain-effects", 2, "MODEL is missing (see relief-view --help)"},
          {"square.obj --normal-map gone.png --output out/old.png", 1, "gone.png: no such file"},
          {"square.obj --normal-map data/bricks-height.png --output out/old.png", 1,
-          "data/bricks-height.png: is a height map, as its metadata say"},
+          "data/bricks-height.png: has 1 channel, but normals need at least 2"},
          {"square.obj --diffuse-map gone.png --output out/old.png", 1, "gone.png: no such file"},
          {"square.obj --strict", 2,
           "--strict: the window shows the findings and has no exit code for them (add --output)"},
