@@ -27,9 +27,10 @@ std::vector<PageSection> only() {
 constexpr const char* usage =
     "usage: relief-documents [--check] [PAGE...]\n"
     "       relief-documents --accuracy REPORT_FOLDER [ASSET_REPORT_FOLDER...]\n"
+    "       relief-documents --assets ASSET_REPORT_FOLDER...\n"
     "Writes the generated documents of docs/, or those of some pages (bump.md). --check writes\n"
     "nothing and exits with 1 if a document differs. --accuracy writes docs/accuracy.md and its\n"
-    "plots from reports of relief-accuracy.\n";
+    "plots from reports of relief-accuracy, --assets only its section on own data.\n";
 
 void write_file(const std::filesystem::path& path, const std::string& text) {
     std::ofstream file(path, std::ios::binary);
@@ -48,14 +49,17 @@ bool update(const std::filesystem::path& path, const std::vector<PageSection>& s
     return true;
 }
 
+void write_section(const AccuracySection& one, const std::filesystem::path& docs) {
+    update(docs / "accuracy.md", {one.section}, false);
+    for (const AccuracySection::Picture& picture : one.pictures)
+        write_file(docs / picture.name, picture.svg);
+}
+
 int write_accuracy(const std::vector<std::string>& folders, const std::filesystem::path& docs) {
     std::vector<AccuracySection> all = {accuracy_results(folders[0])};
     if (folders.size() > 1) all.push_back(accuracy_of_assets({folders.begin() + 1, folders.end()}));
-    for (const AccuracySection& one : all) {
-        update(docs / "accuracy.md", {one.section}, false);
-        for (const AccuracySection::Picture& picture : one.pictures)
-            write_file(docs / picture.name, picture.svg);
-    }
+    for (const AccuracySection& one : all)
+        write_section(one, docs);
     return 0;
 }
 
@@ -84,18 +88,24 @@ int run_documents(const std::vector<std::string>& arguments, const std::filesyst
     std::vector<std::string> names = arguments;
     const bool is_check = std::erase(names, "--check") > 0;
     const bool is_accuracy = std::erase(names, "--accuracy") > 0;
+    const bool is_assets = std::erase(names, "--assets") > 0;
     const bool is_wrong = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
         const bool is_page =
             std::any_of(generated_documents().begin(), generated_documents().end(),
                         [&](const GeneratedDocument& one) { return one.page == name; });
-        return name.empty() || name[0] == '-' || (!is_accuracy && !is_page);
+        return name.empty() || name[0] == '-' || (!is_accuracy && !is_assets && !is_page);
     });
-    if (is_wrong || (is_accuracy && (is_check || names.empty()))) {
+    const bool reads_reports = is_accuracy || is_assets;
+    if (is_wrong || (is_accuracy && is_assets) || (reads_reports && (is_check || names.empty()))) {
         std::cerr << usage;
         return 2;
     }
     try {
         if (is_accuracy) return write_accuracy(names, docs);
+        if (is_assets) {
+            write_section(accuracy_of_assets({names.begin(), names.end()}), docs);
+            return 0;
+        }
         bool differs = false;
         for (const GeneratedDocument& one : generated_documents()) {
             const bool is_named =
