@@ -186,7 +186,7 @@ void add_errors(py::module_& module) {
 
 namespace {
 
-/// What prevents that rows of float32 are read or written in place; empty if nothing does.
+/// Returns the reason why rows of float32 cannot be read or written in place; empty if they can.
 std::string layout_problem(const py::array& array) {
     if (array.shape(0) == 0) return "";
     if (array.strides(1) != sizeof(float)) return "the values of a row are not adjacent in memory";

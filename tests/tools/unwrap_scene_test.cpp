@@ -279,12 +279,12 @@ SceneFile numbered_cube() {
         {"WEIGHTS_0", scene.add(weights, 5121, "VEC4", 4, {{"normalized", true}})},
         {"_NUMBER", scene.add(custom, 5121, "VEC4", 4)}};
     // The elements of COLOR_0 are padded to 8 bytes.
-    json& colored = scene.root["accessors"][cube["attributes"]["COLOR_0"].get<std::size_t>()];
     std::vector<std::uint16_t> padded;
     for (std::size_t i = 0; i < 8; ++i)
         padded.insert(padded.end(), {colors[3 * i], colors[3 * i + 1], colors[3 * i + 2], 0});
     scene.add(padded, 5123, "VEC3", 4);
-    colored["bufferView"] = scene.root["accessors"].back()["bufferView"];
+    const std::size_t colored = cube["attributes"]["COLOR_0"].get<std::size_t>();
+    scene.root["accessors"][colored]["bufferView"] = scene.root["accessors"].back()["bufferView"];
     scene.root["accessors"].erase(scene.root["accessors"].size() - 1);
     scene.root["bufferViews"].back()["byteStride"] = 8;
     cube["targets"][0]["POSITION"] = scene.add_positions(lift);

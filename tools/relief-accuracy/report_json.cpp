@@ -251,7 +251,7 @@ void read(const JsonCursor& place, CurvePoint& value) {
     value = {numbers[0].double_number(), numbers[1].number_or_nan()};
 }
 
-/// What must be unique in an array: "id 'normals/large'".
+/// Returns the property that no other element of an array may have: "id 'normals/large'".
 template <typename Element>
 std::string key_of(const Element& element) {
     if constexpr (std::is_same_v<Element, Experiment>) return "id '" + element.id + "'";

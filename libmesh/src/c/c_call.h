@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What all functions of the C interface share: errors instead of exceptions, structs of any
-/// version, enumerators, execution, and checked views of the caller's memory.
+/// The common part of all functions of the C interface: errors instead of exceptions, structs of
+/// any version, enumerators, execution, and checked views of the caller's memory.
 #pragma once
 
 #include <fmt/format.h>
