@@ -2,7 +2,7 @@
 // Fits heights over the tangent plane by weighted least squares, rotates the plane to the fitted
 // normal, and fits again. Object space, lengths in units of the neighborhood. Source: [Cazals and
 // Pouget 2005]; unlike there, the polynomial passes through the vertex itself, and near vertices
-// have larger weights. Tests: tests/accuracy/ground_truth_test.cpp.
+// have larger weights. Tests: tests/mesh/geometry/fitted_normals_test.cpp.
 #include "relief/mesh/fitted_normals.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Fits smooth surfaces to the vertices of a mesh, whose normals are a reference for others.
-/// Tests: tests/accuracy/ground_truth_test.cpp.
+/// Tests: tests/mesh/geometry/fitted_normals_test.cpp.
 #pragma once
 
 #include <cstddef>
