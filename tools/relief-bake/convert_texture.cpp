@@ -12,6 +12,7 @@
 #include "relief/mesh/map_description.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/statistics.h"
+#include "relief/shade/image_compare.h"
 
 namespace relief::tools {
 namespace {
@@ -94,14 +95,7 @@ Image decoded(const EncodedLevel& level, TextureFormat format, int width, int he
 }
 
 ErrorStats error_of(const Image& exact, const Image& result) {
-    const std::span<const float> a = exact.as<float>();
-    const std::span<const float> b = result.as<float>();
-    std::vector<float> errors(a.size() / 3);
-    for (std::size_t i = 0; i < errors.size(); ++i) {
-        errors[i] = static_cast<float>(degrees_between({a[3 * i], a[3 * i + 1], a[3 * i + 2]},
-                                                       {b[3 * i], b[3 * i + 1], b[3 * i + 2]}));
-    }
-    return error_stats(std::move(errors));
+    return shade::angle_difference(exact, result).angles;
 }
 
 }  // namespace
