@@ -115,18 +115,8 @@ Implicit off_torus(const glm::dvec3& p) {
 }
 
 Implicit off_cubic(const Cubic& cubic, const glm::dvec3& p) {
-    const std::array<double, 4> x = {1.0, p.x, p.x * p.x, p.x * p.x * p.x};
-    const std::array<double, 4> y = {1.0, p.y, p.y * p.y, p.y * p.y * p.y};
-    Implicit result{p.z, {0.0, 0.0, 1.0}};
-    for (std::size_t i = 0; i < 4; ++i) {
-        for (std::size_t j = 0; i + j < 4; ++j) {
-            const double factor = cubic.c[i][j];
-            result.value -= factor * x[i] * y[j];
-            if (i > 0) result.gradient.x -= factor * static_cast<double>(i) * x[i - 1] * y[j];
-            if (j > 0) result.gradient.y -= factor * static_cast<double>(j) * x[i] * y[j - 1];
-        }
-    }
-    return result;
+    const PlacedPoint below = cubic.at(p.x, p.y);
+    return {p.z - below.position.z, {-below.along_s.z, -below.along_t.z, 1.0}};
 }
 
 /// Finds the nearest point by moving tangentially below the given one and back to the surface. The

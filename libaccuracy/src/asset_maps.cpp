@@ -27,22 +27,10 @@ constexpr std::array measured_arithmetics = {Arithmetic::float32, Arithmetic::fl
 
 /// The conversion of all parts, as it is timed.
 std::function<void()> work_of(const BumpMethod& method, const BumpSample& sample,
-                              BumpOptions bump) {
-    bump.kernel = method.kernel;
-    bump.gaussian_radius = method.gaussian_radius;
-    bump.arithmetic = method.arithmetic;
-    NormalMapFormat format;
-    format.bits = method.bits;
+                              const BumpOptions& bump) {
     return [=, &sample, map = Image()]() mutable {
-        Report ignored;
-        for (const Image& part : sample.measured) {
-            if (method.destaircased) {
-                normal_map_from_height(destaircase(part, {.wrap = *bump.wrap}).heights, bump,
-                                       format, map, ignored);
-            } else {
-                normal_map_from_height(part, bump, format, map, ignored);
-            }
-        }
+        for (const Image& part : sample.measured)
+            convert_by(method, part, bump, map);
     };
 }
 
@@ -112,9 +100,9 @@ AssetExperiment measure_asset_heights(const BumpSample& sample, glm::ivec2 size,
         experiment.ground_truth =
             fmt::format("The most accurate conversion that is known for this map: {}. {}.",
                         reference.description, choice.reason);
-        experiment.reference_error = reference.reference_degrees;
-        if (reference.upper_degrees > KernelChoice::min_range * reference.reference_degrees)
-            experiment.reference_error_upper = reference.upper_degrees;
+        experiment.reference_error = reference.error.rms;
+        if (reference.upper_error.rms > KernelChoice::min_range * reference.error.rms)
+            experiment.reference_error_upper = reference.upper_error.rms;
     }
     experiment.input = result.is_whole ? fmt::format("{} x {} texels", size.x, size.y)
                                        : fmt::format("{} texels in nine parts of {} x {}",
@@ -129,7 +117,7 @@ AssetExperiment measure_asset_heights(const BumpSample& sample, glm::ivec2 size,
         method.command = command_of(one.method, bump, options);
         method.nominal_cost = nominal_cost(one.method);
     }
-    finish(asset, std::move(measured),
+    finish(asset, measured,
            {.reference = is_lossy ? unknown_loss(options) : "the map itself",
             .is_reference_unknown = is_lossy,
             .limited_reference =
@@ -220,10 +208,12 @@ AssetExperiment measure_asset_normals(const Image& normals, const NormalMapStora
         }
         methods.push_back(std::move(method));
     }
-    finish(asset, std::move(methods),
-           {CostKind::bytes, invisible_degrees,
-            is_lossy ? unknown_loss(options) : "the rounding of the file itself", is_lossy,
-            rounding_degrees(file.bits, options.request.kind)},
+    finish(asset, methods,
+           {.cost = CostKind::bytes,
+            .negligible_error = invisible_degrees,
+            .reference = is_lossy ? unknown_loss(options) : "the rounding of the file itself",
+            .is_reference_unknown = is_lossy,
+            .limited_reference = rounding_degrees(file.bits, options.request.kind)},
            options);
     return asset;
 }
@@ -292,7 +282,7 @@ AssetExperiment measure_asset_bake(const Baker& baker, int size, const AssetOpti
             if (options.run.is_timed) methods.back().known_time = Timing{results[way].seconds[f]};
         }
     }
-    finish(asset, std::move(methods), {CostKind::time, invisible_degrees}, options);
+    finish(asset, methods, {.negligible_error = invisible_degrees}, options);
     return asset;
 }
 

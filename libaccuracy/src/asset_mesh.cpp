@@ -140,8 +140,7 @@ ErrorStats errors_of(const std::vector<glm::vec3>& normals, bool are_by_corner, 
         const glm::vec3& actual =
             are_by_corner ? normals[corner]
                           : normals[mesh.triangles[corner / 3][static_cast<int>(corner % 3)]];
-        degrees.push_back(
-            static_cast<float>(degrees_between(glm::dvec3(actual), ground_truth.normals[i])));
+        degrees.push_back(angle_of(glm::dvec3(actual), ground_truth.normals[i]));
     }
     return error_stats(std::move(degrees));
 }
@@ -239,7 +238,7 @@ AssetExperiment measure_normals(const Mesh& mesh, const std::string& whole,
             method.command.clear();
     }
     experiment.reference_error = ground_truth.expected_error;
-    finish(asset, std::move(methods), {.reference = "the fitted surface itself"}, options);
+    finish(asset, methods, {.reference = "the fitted surface itself"}, options);
     if (ground_truth.is_enough) {
         add_caveats(asset, ground_truth, creases);
     } else {
@@ -278,7 +277,7 @@ SamplePoints sample_points(const Mesh& mesh) {
                 sample.barycentric = glm::dvec3(1.0 / 6.0);
                 sample.barycentric[corner] = 2.0 / 3.0;
             }
-            const glm::dmat3 derived = basis_at(mesh, {}, ShaderBasis::derived, sample);
+            const glm::dmat3 derived = basis_at(mesh, {{}, ShaderBasis::derived}, sample);
             if (!is_finite(derived)) {
                 if (corner < 0) ++points.left_out;
                 break;
@@ -293,8 +292,7 @@ SamplePoints sample_points(const Mesh& mesh) {
 /// A basis, and how to compute it.
 struct Basis {
     std::string name;
-    CornerTangents tangents;
-    ShaderBasis shader = ShaderBasis::as_interpolated;
+    TangentFrames frames;
     std::function<void()> work{};
     std::string command{};
     bool is_convention = false;  ///< The basis that bakers and renderers agree on.
@@ -303,10 +301,10 @@ struct Basis {
 std::vector<Basis> bases_of(const Mesh& mesh, const std::vector<glm::vec4>& stored,
                             const AssetOptions& options) {
     std::vector<Basis> bases;
-    for (const TangentFrameMethod& method : tangent_methods()) {
-        Basis basis{method.name, method.tangents_of(mesh), method.basis};
-        if (method.tangents) {
-            basis.work = [method, &mesh] { method.tangents(mesh); };
+    for (const FrameMethod& method : tangent_methods()) {
+        Basis basis{method.name, method.compute(mesh)};
+        if (method.has_work) {
+            basis.work = [method, &mesh] { method.compute(mesh); };
             basis.command = fmt::format("relief-mesh process {} -o OUT.glb --tangents {}",
                                         options.arguments, method.name);
         }
@@ -317,7 +315,7 @@ std::vector<Basis> bases_of(const Mesh& mesh, const std::vector<glm::vec4>& stor
     Basis file_basis{"the file's own", {}};
     for (const glm::uvec3& triangle : mesh.triangles) {
         for (int corner = 0; corner < 3; ++corner)
-            file_basis.tangents.push_back(stored[triangle[corner]]);
+            file_basis.frames.tangents.push_back(stored[triangle[corner]]);
     }
     bases.push_back(std::move(file_basis));
     return bases;
@@ -357,18 +355,17 @@ AssetExperiment from_gradients(const Mesh& mesh, const std::vector<Basis>& bases
     describe(experiment, mesh, points, whole);
     std::vector<Method> methods;
     for (const Basis& basis : bases) {
-        if (basis.shader == ShaderBasis::derived) continue;  // It is the ground truth.
+        if (basis.frames.basis == ShaderBasis::derived) continue;  // It is the ground truth.
         std::vector<float> degrees;
         for (std::size_t i = 0; i < points.samples.size(); ++i) {
-            const glm::dmat3 actual =
-                basis_at(mesh, basis.tangents, basis.shader, points.samples[i]);
-            degrees.push_back(static_cast<float>(degrees_between(actual[0], points.derived[i][0])));
+            const glm::dmat3 actual = basis_at(mesh, basis.frames, points.samples[i]);
+            degrees.push_back(angle_of(actual[0], points.derived[i][0]));
         }
         methods.push_back(method_of(basis, std::move(degrees)));
         // A better average is no reason to leave the basis that bakers and renderers agree on.
         if (!basis.is_convention) methods.back().command.clear();
     }
-    finish(asset, std::move(methods), {}, options);
+    finish(asset, methods, {}, options);
     if (asset.recommendation.method) {
         const Measurement& taken = experiment.measurements[*asset.recommendation.method];
         asset.recommendation.description = fmt::format(
@@ -398,16 +395,14 @@ AssetExperiment from_mikktspace(const Mesh& mesh, const std::vector<Basis>& base
     for (const Basis& basis : bases) {
         std::vector<float> degrees;
         for (const Sample& sample : points.samples) {
-            const glm::dmat3 expected =
-                basis_at(mesh, convention.tangents, convention.shader, sample);
-            const glm::dmat3 actual = basis_at(mesh, basis.tangents, basis.shader, sample);
+            const glm::dmat3 expected = basis_at(mesh, convention.frames, sample);
+            const glm::dmat3 actual = basis_at(mesh, basis.frames, sample);
             for (const glm::dvec3& texel : tilted_texels)
-                degrees.push_back(
-                    static_cast<float>(degrees_between(actual * texel, expected * texel)));
+                degrees.push_back(angle_of(actual * texel, expected * texel));
         }
         methods.push_back(method_of(basis, std::move(degrees)));
     }
-    finish(asset, std::move(methods), {}, options);
+    finish(asset, methods, {}, options);
     const Measurement* nearest = nullptr;
     for (std::size_t i = 0; i < bases.size(); ++i) {
         const Measurement& one = experiment.measurements[i];
@@ -455,13 +450,14 @@ AssetExperiment stored_frames(const Mesh& mesh, const CornerTangents& tangents,
     experiment.input = fmt::format("{} frames", frames->normals.size());
     experiment.item = "frame";
     experiment.items = static_cast<double>(frames->normals.size());
-    std::vector<Method> methods = frame_methods(frames, FrameWork::encode);
+    std::vector<Method> methods = frame_methods(frames, StorageWork::encode);
     for (Method& method : methods) {
         method.command = fmt::format(
             "encode_frames(normals, tangents, FrameEncoding::{}, FrameRounding::{}, report)",
             method.choices[0].second, method.choices[1].second);
     }
-    finish(asset, std::move(methods), {CostKind::bytes, invisible_degrees}, options);
+    finish(asset, methods, {.cost = CostKind::bytes, .negligible_error = invisible_degrees},
+           options);
     return asset;
 }
 
@@ -481,7 +477,7 @@ std::vector<AssetExperiment> measure_tangents(Mesh mesh, const std::string& whol
     std::vector<AssetExperiment> all;
     all.push_back(from_gradients(mesh, bases, points, whole, options));
     all.push_back(from_mikktspace(mesh, bases, points, whole, options));
-    all.push_back(stored_frames(mesh, bases.front().tangents, options));
+    all.push_back(stored_frames(mesh, bases.front().frames.tangents, options));
     return all;
 }
 

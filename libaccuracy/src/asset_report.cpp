@@ -276,8 +276,8 @@ void detail::set_finding(AssetExperiment& asset) {
     if (!asset.command().empty()) asset.experiment.finding += " To do it: " + asset.command();
 }
 
-void detail::finish(AssetExperiment& asset, std::vector<Method> methods, const AssetRule& rule,
-                    const AssetOptions& options) {
+void detail::finish(AssetExperiment& asset, const std::vector<Method>& methods,
+                    RecommendationRule rule, const AssetOptions& options) {
     const ProgressStage stage("measuring");
     std::vector<unsigned char> choosable;
     std::vector<double> nominal_costs;
@@ -296,10 +296,10 @@ void detail::finish(AssetExperiment& asset, std::vector<Method> methods, const A
             one.expected = ExpectedError{*asset.experiment.reference_error, one.error.rms};
     }
     mark_pareto_optimal(asset.experiment);
-    asset.recommendation =
-        recommended(asset.experiment,
-                    {options.request, rule.cost, rule.negligible_error, choosable, nominal_costs,
-                     rule.reference, rule.is_reference_unknown, rule.limited_reference});
+    rule.request = options.request;
+    rule.choosable = choosable;
+    rule.nominal_costs = nominal_costs;
+    asset.recommendation = recommended(asset.experiment, rule);
     set_finding(asset);
 }
 

@@ -21,22 +21,14 @@ inline constexpr double invisible_degrees = 0.01;
 /// The error of a method that is known already, as a function.
 std::function<MethodError()> known_error(const ErrorStats& error);
 
-/// The rule that selects the recommended method.
-struct AssetRule {
-    CostKind cost = CostKind::time;
-    double negligible_error = 0.0;      ///< Degrees; RecommendationRule::negligible_error.
-    std::string reference{};            ///< Names the source of Experiment::reference_error.
-    bool is_reference_unknown = false;  ///< RecommendationRule::is_reference_unknown.
-    std::optional<double> limited_reference{};  ///< RecommendationRule::limited_reference.
-};
-
 /// Begins an experiment on a file: id "own/FILE/TOPIC", title "TITLE of FILE", unit degrees.
 AssetExperiment asset_experiment(Subject subject, const std::string& topic,
                                  const std::string& title, const AssetOptions& options);
 
 /// Measures the methods, recommends one of those that have a command, and makes that the finding.
 /// Experiment::reference_error must be set before.
-void finish(AssetExperiment& asset, std::vector<Method> methods, const AssetRule& rule,
+/// \param rule  all but the request, the choosable methods and the nominal costs
+void finish(AssetExperiment& asset, const std::vector<Method>& methods, RecommendationRule rule,
             const AssetOptions& options);
 
 /// Makes the recommendation and its command the finding.

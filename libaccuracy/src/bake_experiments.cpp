@@ -270,9 +270,6 @@ class BakedWays {
     [[nodiscard]] std::size_t format_of(std::size_t method) const {
         return method % formats_.size();
     }
-    [[nodiscard]] std::size_t method(std::size_t way, std::size_t format) const {
-        return way * formats_.size() + format;
-    }
 
     /// The errors of a way in all formats; the rays are cast once.
     const BakeMeasurement& result(std::size_t way) {
@@ -363,8 +360,7 @@ void finish_samples(BakedWays& baked, Experiment& report) {
             curve_of(depth_name(baked.formats()[format].bits), baked, 0, ways.size(), format));
     }
     // Sample points are the centers of equal squares: halving their distance quarters the error.
-    chart.curves.back() =
-        fitted_curve(chart.curves.back().method, chart.curves.back().points, -1.0);
+    fit(chart.curves.back(), -1.0);
     report.charts = {std::move(chart)};
     const std::array maps = {BakedMap{ways.front(), {.bits = 8}}, BakedMap{ways[2], {.bits = 8}},
                              BakedMap{ways[2], {.bits = 16}}};
@@ -380,8 +376,7 @@ PreparedExperiment by_samples(const std::shared_ptr<const BumpyBake>& bake, bool
         std::vector<NormalMapFormat>{{.bits = 8}, {.bits = 16}, {.bits = 32}});
     PreparedExperiment prepared = on_ways(baked);
     prepared.report.question = "How many rays does a texel need, and how many bits?";
-    for (const Method& method : prepared.methods)
-        prepared.compared.push_back(method.name);
+    prepared.compared = names_of(prepared.methods);
     prepared.finish = [baked](Experiment& report) { finish_samples(*baked, report); };
     return prepared;
 }

@@ -44,13 +44,34 @@ std::string name_of(Kernel kernel, int gaussian_radius) {
     return fmt::format("gaussian {}", gaussian_radius);
 }
 
-double rms_error(const BumpField& field, Kernel kernel, int gaussian_radius) {
-    BumpOptions options = field.options;
-    options.kernel = kernel;
-    options.gaussian_radius = gaussian_radius;
-    options.arithmetic = Arithmetic::float64;
+BumpOptions options_of(const BumpMethod& method, BumpOptions options) {
+    options.kernel = method.kernel;
+    options.gaussian_radius = method.gaussian_radius;
+    options.arithmetic = method.arithmetic;
+    return options;
+}
+
+Image normals_by(const BumpMethod& method, const Image& heights, const BumpOptions& options) {
     Report report;
-    return field_error(normals_from_height(field.heights, options, report), field).rms;
+    return normals_from_height(heights, options_of(method, options), report);
+}
+
+void convert_by(const BumpMethod& method, const Image& heights, const BumpOptions& options,
+                Image& result) {
+    Report report;
+    const auto convert = [&](const Image& input) {
+        normal_map_from_height(input, options_of(method, options), {.bits = method.bits}, result,
+                               report);
+    };
+    if (method.destaircased)
+        convert(destaircase(heights, {.wrap = *options.wrap}).heights);
+    else
+        convert(heights);
+}
+
+double rms_error(const BumpField& field, Kernel kernel, int gaussian_radius) {
+    const BumpMethod method{kernel, gaussian_radius, Arithmetic::float64};
+    return field_error(normals_by(method, field.heights, field.options), field).rms;
 }
 
 const FieldRecipe& field_recipe(const std::string& name) {
@@ -81,13 +102,10 @@ WaveMap oblique_wave(int side, double wavelength, int bits) {
 }
 
 ErrorStats wave_errors(const WaveMap& wave, const NamedKernel& kernel, Arithmetic arithmetic) {
-    BumpOptions options = wave.options;
-    options.kernel = kernel.kernel;
-    options.gaussian_radius = kernel.radius;
-    options.arithmetic = arithmetic;
-    Report report;
-    const int margin = options.wrap == Wraps(Wrap::repeat) ? 0 : wave_margin;
-    return map_errors(normals_from_height(wave.heights, options, report), wave.normals, margin);
+    const int margin = wave.options.wrap == Wraps(Wrap::repeat) ? 0 : wave_margin;
+    return map_errors(
+        normals_by({kernel.kernel, kernel.radius, arithmetic}, wave.heights, wave.options),
+        wave.normals, margin);
 }
 
 WaveMap surface_at(int side) {
@@ -121,74 +139,58 @@ Method described(const BumpMethod& method) {
 
 namespace {
 
-/// Adds the order of a kernel to its curve. Only points at which the order dominates are fitted:
-/// the wave is longer than the reach of the kernel, and the error exceeds that of heights in float.
-Curve with_order(Curve curve, const GradientKernel& kernel) {
-    std::vector<CurvePoint> ruled;
-    for (const CurvePoint& point : curve.points) {
-        if (point.x >= 4.0 * kernel.radius && point.error > 1e-4) ruled.push_back(point);
-    }
-    curve.order = fitted_order(ruled);
-    curve.expected_order = -kernel.order;
-    return curve;
+/// A chart with a curve per kernel.
+Chart kernel_chart(Chart chart, const std::vector<double>& all_x,
+                   const std::function<WaveMap(double x)>& wave_at) {
+    chart.y_label = "RMS error, degrees";
+    return chart_over(
+        std::move(chart), names_of(named_kernels()), all_x, wave_at,
+        [](std::size_t i, const WaveMap& wave) {
+            return curve_error(wave_errors(wave, named_kernels()[i], Arithmetic::float64));
+        });
 }
 
-/// A chart with an empty curve per kernel.
-Chart kernel_chart(const char* id, const char* title, const char* x_label) {
-    Chart chart{.id = id, .title = title, .x_label = x_label, .y_label = "RMS error, degrees"};
-    for (const NamedKernel& kernel : named_kernels())
-        chart.curves.emplace_back().method = kernel.name;
-    return chart;
-}
-
-/// Adds a point to the curve of each kernel.
-void add_points(Chart& chart, double x, const WaveMap& wave) {
+/// Adds the orders of the kernels. Only points at which the order dominates are fitted: the wave is
+/// longer than the reach of the kernel, and the error exceeds that of heights in float.
+/// \param x_per_texel  x, divided by the length of the shortest wave in texels
+void add_orders(Chart& chart, double x_per_texel) {
     for (std::size_t k = 0; k < chart.curves.size(); ++k) {
-        const ErrorStats errors = wave_errors(wave, named_kernels()[k], Arithmetic::float64);
-        chart.curves[k].points.push_back({x, curve_error(errors)});
+        const NamedKernel& named = named_kernels()[k];
+        const GradientKernel kernel = gradient_kernel(named.kernel, named.radius);
+        std::vector<CurvePoint> ruled;
+        for (const CurvePoint& point : chart.curves[k].points) {
+            if (point.x >= 4.0 * x_per_texel * kernel.radius && point.error > 1e-4)
+                ruled.push_back(point);
+        }
+        chart.curves[k].order = fitted_order(ruled);
+        chart.curves[k].expected_order = -kernel.order;
     }
 }
 
 /// The error over the wavelength, for maps of `side` texels with heights of `bits` bits (32:
 /// floats).
 Chart wavelength_chart(int bits, int side, bool is_quick) {
-    Chart chart = kernel_chart("wavelength", "Longer waves", "wavelength, texels");
     std::vector<double> wavelengths = {4, 6, 8, 12, 16, 24, 32, 64, 128, 256};
     if (!is_quick) wavelengths = {4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 128, 192, 256};
-    for (const double wavelength : wavelengths)
-        add_points(chart, wavelength, oblique_wave(side, wavelength, bits));
+    Chart chart = kernel_chart(
+        {.id = "wavelength", .title = "Longer waves", .x_label = "wavelength, texels"}, wavelengths,
+        [=](double wavelength) { return oblique_wave(side, wavelength, bits); });
     // With integer codes errors grow again: longer waves have smaller steps, which rounding loses.
-    if (bits < 32) return chart;
-    for (std::size_t k = 0; k < chart.curves.size(); ++k) {
-        const NamedKernel& kernel = named_kernels()[k];
-        chart.curves[k] =
-            with_order(chart.curves[k], gradient_kernel(kernel.kernel, kernel.radius));
-    }
+    if (bits == 32) add_orders(chart, 1.0);
     return chart;
 }
 
 /// The error over the resolution of one surface.
 Chart resolution_chart(bool is_quick) {
+    std::vector<double> sides = {64, 128, 256};
+    if (!is_quick) sides.insert(sides.end(), {512, 1024});
     Chart chart =
-        kernel_chart("resolution", "The same surface in finer texels", "texels along a side");
-    for (const int side :
-         is_quick ? std::vector{64, 128, 256} : std::vector{64, 128, 256, 512, 1024})
-        add_points(chart, side, surface_at(side));
-    for (std::size_t k = 0; k < chart.curves.size(); ++k) {
-        const NamedKernel& kernel = named_kernels()[k];
-        // The shortest waves have an eighth of the texels of the coarsest map.
-        GradientKernel reach = gradient_kernel(kernel.kernel, kernel.radius);
-        reach.radius *= 8;
-        chart.curves[k] = with_order(chart.curves[k], reach);
-    }
+        kernel_chart({.id = "resolution",
+                      .title = "The same surface in finer texels",
+                      .x_label = "texels along a side"},
+                     sides, [](double side) { return surface_at(static_cast<int>(side)); });
+    add_orders(chart, 8.0);  // The shortest waves have an eighth of the texels of the coarsest map.
     return chart;
-}
-
-BumpOptions with_kernel(BumpOptions options, const NamedKernel& kernel, Arithmetic arithmetic) {
-    options.kernel = kernel.kernel;
-    options.gaussian_radius = kernel.radius;
-    options.arithmetic = arithmetic;
-    return options;
 }
 
 Experiment square_map(int side) {
@@ -224,20 +226,18 @@ PreparedExperiment on_wave(int bits, bool is_quick) {
         fmt::format("{} x {} texels of a wave {} texels long, slope 1, heights in {}", side, side,
                     wavelength, depth_name(bits));
     prepared.costs.memory = false;
-    const std::vector<BumpMethod> methods = kernel_methods(32, false);
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-        const Arithmetic arithmetic = methods[i].arithmetic;
-        const NamedKernel kernel{name_of(methods[i].kernel, methods[i].gaussian_radius),
-                                 methods[i].kernel, methods[i].gaussian_radius};
+    for (const BumpMethod& method : kernel_methods(32, false)) {
+        const std::string kernel = name_of(method.kernel, method.gaussian_radius);
+        const char* const arithmetic = enum_name(method.arithmetic);
         prepared.methods.push_back(
-            {.name = fmt::format("{}, {}", kernel.name, enum_name(arithmetic)),
-             .choices = {{"kernel", kernel.name}, {"arithmetic", enum_name(arithmetic)}},
-             .error = [wave, kernel, arithmetic] { return wave_errors(*wave, kernel, arithmetic); },
-             .work =
-                 [wave, chosen = with_kernel(wave->options, kernel, arithmetic)] {
-                     Report report;
-                     normals_from_height(wave->heights, chosen, report);
-                 }});
+            {.name = fmt::format("{}, {}", kernel, arithmetic),
+             .choices = {{"kernel", kernel}, {"arithmetic", arithmetic}},
+             .error =
+                 [wave, method] {
+                     return wave_errors(*wave, {{}, method.kernel, method.gaussian_radius},
+                                        method.arithmetic);
+                 },
+             .work = [wave, method] { normals_by(method, wave->heights, wave->options); }});
     }
     prepared.finish = [bits, is_quick](Experiment& report) {
         report.charts = {wavelength_chart(bits, side, is_quick)};
@@ -245,27 +245,13 @@ PreparedExperiment on_wave(int bits, bool is_quick) {
     return prepared;
 }
 
-/// The complete work of a method, as it is timed.
-Image converted(const BumpField& field, const BumpMethod& method) {
-    BumpOptions options = field.options;
-    options.kernel = method.kernel;
-    options.gaussian_radius = method.gaussian_radius;
-    options.arithmetic = method.arithmetic;
-    Report report;
-    if (method.destaircased) {
-        const Image smooth = destaircase(field.heights, {.wrap = *options.wrap}).heights;
-        return normal_map_from_height(smooth, options, {.bits = method.bits}, report);
-    }
-    return normal_map_from_height(field.heights, options, {.bits = method.bits}, report);
-}
-
 /// The errors of the stored normals.
 ErrorStats conversion_error(const BumpField& field, const BumpMethod& method) {
     const NormalMapFormat format{.bits = method.bits};
     Report report;
-    return map_errors(
-        decode_normal_map(converted(field, method), format.green, format.flat, report),
-        field.normals);
+    Image map;
+    convert_by(method, field.heights, field.options, map);
+    return map_errors(decode_normal_map(map, format.green, format.flat, report), field.normals);
 }
 
 PreparedExperiment on_recipe(const FieldRecipe& recipe, int side) {
@@ -278,9 +264,7 @@ PreparedExperiment on_recipe(const FieldRecipe& recipe, int side) {
         "Tests verify them by numerical differentiation.";
     prepared.report.input = fmt::format("{} x {} texels, {}; the normal map in {}", side, side,
                                         recipe.name, depth_name(bits));
-    const std::vector<BumpMethod> methods = kernel_methods(bits, field->heights.bits() == 8);
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-        const BumpMethod& method = methods[i];
+    for (const BumpMethod& method : kernel_methods(bits, field->heights.bits() == 8)) {
         const std::string kernel = name_of(method.kernel, method.gaussian_radius);
         const char* const arithmetic = enum_name(method.arithmetic);
         prepared.methods.push_back(
@@ -290,7 +274,11 @@ PreparedExperiment on_recipe(const FieldRecipe& recipe, int side) {
                          {"arithmetic", arithmetic},
                          {"steps", method.destaircased ? "smoothed away" : "as they are"}},
              .error = [field, method] { return conversion_error(*field, method); },
-             .work = [field, method] { converted(*field, method); }});
+             .work =
+                 [field, method] {
+                     Image map;
+                     convert_by(method, field->heights, field->options, map);
+                 }});
     }
     prepared.finish = [field](Experiment& report) {
         const KernelChoice choice = choose_kernel(field->heights, field->options);
@@ -305,9 +293,8 @@ void add_heat_maps(const FieldRecipe& recipe, int side, Experiment& experiment) 
     const BumpField field = make_bump_field(recipe, side, side);
     for (const NamedKernel& kernel : {NamedKernel{"central3", Kernel::central3},
                                       NamedKernel{"gaussian 4", Kernel::gaussian, 4}}) {
-        Report report;
-        const Image normals = normals_from_height(
-            field.heights, with_kernel(field.options, kernel, Arithmetic::float64), report);
+        const Image normals = normals_by({kernel.kernel, kernel.radius, Arithmetic::float64},
+                                         field.heights, field.options);
         experiment.heat_maps.push_back(
             {fmt::format("Error of {} on waves that are long at the sides and short in the "
                          "middle",

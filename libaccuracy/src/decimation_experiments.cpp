@@ -153,15 +153,14 @@ Chart triangles_chart(const DecimationInput& input, DecimationError kind, bool i
     for (const DecimationMethod& method : decimation_methods()) {
         if (method.max_normal_degrees > 0.0 || method.keeps_seams) continue;
         if (is_quick && method.normal_weight > 0.0) continue;
-        std::vector<CurvePoint> points;
+        Curve& curve = chart.curves.emplace_back(Curve{.method = method.name});
         for (const std::size_t part : parts) {
             const Mesh result = decimated_by(method, input.mesh, part);
-            points.push_back(
+            curve.points.push_back(
                 {static_cast<double>(result.triangles.size()),
                  curve_error(surface_errors(result, input.surface, surface_seed, kind))});
         }
-        chart.curves.push_back(fitted_curve(method.name, std::move(points),
-                                            kind == DecimationError::angle ? -0.5 : -1.0));
+        fit(curve, kind == DecimationError::angle ? -0.5 : -1.0);
     }
     return chart;
 }

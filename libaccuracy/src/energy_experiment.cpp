@@ -84,20 +84,16 @@ class BallRenderer {
 /// \param ball  returns the ball for a roughness
 Chart loss_chart(const GlDevice& device, int size, const char* id, const char* title,
                  const std::function<Scene(double)>& ball) {
-    Chart chart{.id = id,
-                .title = title,
-                .x_label = "roughness",
-                .y_label = "lost light in percent",
-                .is_x_log = false};
-    for (std::size_t i = 0; i < energy_choices.size(); ++i) {
-        Curve curve{.method = energy_choices.at(i).name};
-        for (const double roughness : {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0}) {
-            BallRenderer renderer(device, ball(roughness), static_cast<EnergyMethod>(i), size);
-            curve.points.push_back({roughness, renderer.losses().rms});
-        }
-        chart.curves.push_back(std::move(curve));
-    }
-    return chart;
+    return chart_over(
+        {.id = id,
+         .title = title,
+         .x_label = "roughness",
+         .y_label = "lost light in percent",
+         .is_x_log = false},
+        names_of(energy_choices), {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0}, ball,
+        [&](std::size_t i, const Scene& scene) {
+            return BallRenderer(device, scene, static_cast<EnergyMethod>(i), size).losses().rms;
+        });
 }
 
 }  // namespace

@@ -239,14 +239,9 @@ std::string detail::finding_of(const Experiment& experiment,
     return text + ".";
 }
 
-Curve detail::fitted_curve(std::string method, std::vector<CurvePoint> points,
-                           std::optional<double> expected_order) {
-    Curve curve;
-    curve.method = std::move(method);
-    curve.order = fitted_order(points);
+void detail::fit(Curve& curve, std::optional<double> expected_order) {
+    curve.order = fitted_order(curve.points);
     curve.expected_order = expected_order;
-    curve.points = std::move(points);
-    return curve;
 }
 
 namespace {

@@ -2,7 +2,7 @@
 /// \file
 /// The form of an experiment (an input, methods and rounds), the driver that runs experiments in
 /// passes, the list of all experiments, and the clocks and limits with which the driver measures.
-/// Tests: tests/accuracy/measure_test.cpp, experiment_driver_test.cpp.
+/// Tests: tests/accuracy/experiment_driver_test.cpp.
 #pragma once
 
 #include <sched.h>
@@ -13,7 +13,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -58,8 +57,40 @@ struct MethodOn {
     std::string name{};
     Choices choices{};
     std::function<Result(const Input&)> compute{};
-    bool is_textbook = false;  ///< Code without guards, measured for contrast.
+    bool is_textbook = false;   ///< Code without guards, measured for contrast.
+    bool has_work = true;       ///< Otherwise it has no time of its own.
+    double stored_bytes = 0.0;  ///< Method::stored_bytes
+    std::string note{};
 };
+
+/// The names of methods.
+template <typename Methods>
+std::vector<std::string> names_of(const Methods& methods) {
+    std::vector<std::string> names;
+    for (const auto& one : methods)
+        names.emplace_back(one.name);
+    return names;
+}
+
+/// Applies functions to one input, as methods of an experiment.
+///
+/// \param input  of the work that is timed
+/// \param error  returns the error of one of the functions
+template <typename Input, typename Result, typename Error>
+std::vector<Method> methods_on(const std::shared_ptr<const Input>& input,
+                               const std::vector<MethodOn<Input, Result>>& functions,
+                               const Error& error) {
+    std::vector<Method> methods;
+    for (const MethodOn<Input, Result>& one : functions) {
+        methods.push_back({.name = one.name,
+                           .choices = one.choices,
+                           .error = [error, one] { return MethodError(error(one)); },
+                           .stored_bytes = one.stored_bytes,
+                           .note = one.note});
+        if (one.has_work) methods.back().work = [input, compute = one.compute] { compute(*input); };
+    }
+    return methods;
+}
 
 /// An experiment whose input exists.
 struct PreparedExperiment {
@@ -161,9 +192,25 @@ std::vector<PlannedExperiment> stability_plan(const PlanOptions& options);
 /// \param compared  as PreparedExperiment::compared
 std::string finding_of(const Experiment& experiment, const std::vector<std::string>& compared);
 
-/// A curve with the order fitted to its points.
-Curve fitted_curve(std::string method, std::vector<CurvePoint> points,
-                   std::optional<double> expected_order);
+/// Completes a chart with a curve per method.
+///
+/// \param input_at  makes the input at x, once for all methods
+/// \param error  returns the error of method number i on an input
+template <typename InputAt, typename Error>
+Chart chart_over(Chart chart, const std::vector<std::string>& methods,
+                 const std::vector<double>& all_x, const InputAt& input_at, const Error& error) {
+    for (const std::string& method : methods)
+        chart.curves.push_back({.method = method});
+    for (const double x : all_x) {
+        const auto input = input_at(x);
+        for (std::size_t i = 0; i < methods.size(); ++i)
+            chart.curves[i].points.push_back({x, error(i, input)});
+    }
+    return chart;
+}
+
+/// Adds the order fitted to the points of a curve, and that of theory.
+void fit(Curve& curve, std::optional<double> expected_order);
 
 // Clocks, thread limits and the peak memory of works
 

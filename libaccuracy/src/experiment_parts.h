@@ -53,6 +53,11 @@ inline std::string name_of(Triangulation triangulation) {
     return names.at(static_cast<std::size_t>(triangulation));
 }
 
+/// The angle between two directions in degrees, for lists of errors.
+inline float angle_of(const glm::dvec3& actual, const glm::dvec3& expected) {
+    return static_cast<float>(degrees_between(actual, expected));
+}
+
 // Vertex normals: every weighting on analytic surfaces and on the fans of [Max 1999].
 
 /// Weightings by their names in relief-mesh; without a weight, it is chosen per vertex.
@@ -101,6 +106,16 @@ std::span<const NamedKernel> named_kernels();
 
 /// The name of a kernel in named_kernels().
 std::string name_of(Kernel kernel, int gaussian_radius);
+
+/// The bump options of a method.
+BumpOptions options_of(const BumpMethod& method, BumpOptions options);
+
+/// The unrounded normals of heights, without smoothing of steps.
+Image normals_by(const BumpMethod& method, const Image& heights, const BumpOptions& options);
+
+/// The complete conversion of a map, as it is timed. \param result  its memory is used again
+void convert_by(const BumpMethod& method, const Image& heights, const BumpOptions& options,
+                Image& result);
 
 /// The RMS error in degrees of the unrounded normals in double precision. Texels without a defined
 /// ground truth do not count.
@@ -197,25 +212,28 @@ class BumpyBake {
 // Stability: sweeps over a growing quantity, hard inputs (degenerate triangles, needles), and
 // textbook code without guards, which is measured for contrast with the library.
 
-/// The errors of several methods while one quantity grows, and the value at which each method
-/// fails.
+/// A quantity that grows from 10^0 by 10^step to 10^decades.
+struct Sweep {
+    std::string id;  ///< Of its chart.
+    std::string title;
+    std::string x_label;
+    int decades = 0;
+    int step = 1;
+    /// The angular errors of a method at a value, in degrees; NaN where a direction is undefined.
+    std::function<std::vector<float>(std::size_t method, double value)> errors;
+};
+
+/// The errors of several methods in sweeps, and the value at which each method fails.
 class Sweeps {
   public:
     /// \param bound  limit of the RMS error in degrees; a method fails where it exceeds this
-    Sweeps(std::vector<std::string> methods, double bound);
-
-    /// The angular errors of a method at a value, in degrees; NaN where a direction is undefined.
-    using Errors = std::function<std::vector<float>(std::size_t method, double value)>;
-
-    /// Adds a chart over the values 10^0, 10^step, ... 10^decades. Nothing is computed yet.
-    void add(const std::string& id, const std::string& title, const std::string& x_label,
-             int decades, int step, Errors errors);
+    Sweeps(std::vector<std::string> methods, double bound, std::vector<Sweep> sweeps);
 
     /// Computes the curves of a method in all charts.
     /// \return the errors of all curves together
     ErrorStats measure(std::size_t method);
 
-    /// The charts, with the curves of the measured methods.
+    /// A chart per sweep, with the curves of the measured methods.
     [[nodiscard]] const std::vector<Chart>& charts() const { return charts_; }
 
     /// "Larger (...): plain area fails from 1e+18 on, all others are within the limit." for each
@@ -223,16 +241,10 @@ class Sweeps {
     [[nodiscard]] std::string breaks() const;
 
   private:
-    struct Values {
-        int decades = 0;
-        int step = 1;
-        Errors errors;
-    };
-
     std::vector<std::string> methods_;
     double bound_;
+    std::vector<Sweep> sweeps_;
     std::vector<Chart> charts_;
-    std::vector<Values> values_;  ///< By chart.
 };
 
 /// Kinds of triangles that a mesh can have without a change of its surface.
@@ -348,6 +360,12 @@ enum class ShaderBasis {
     derived,          ///< From screen-space derivatives: shaders/tangent_frame.glsl#derivatives.
 };
 
+/// The tangents of a mesh, and their use by a fragment shader.
+struct TangentFrames {
+    CornerTangents tangents{};
+    ShaderBasis basis = ShaderBasis::as_interpolated;
+};
+
 /// A point in a triangle.
 struct Sample {
     std::uint32_t triangle = 0;
@@ -358,8 +376,7 @@ struct Sample {
 std::vector<Sample> samples_of(const TexturedMesh& ground_truth);
 
 /// Tangent, bitangent and normal as columns.
-glm::dmat3 basis_at(const Mesh& mesh, const CornerTangents& tangents, ShaderBasis basis,
-                    const Sample& sample);
+glm::dmat3 basis_at(const Mesh& mesh, const TangentFrames& frames, const Sample& sample);
 
 /// The exact basis of the surface.
 glm::dmat3 exact_basis_at(const TexturedMesh& ground_truth, const Sample& sample);
@@ -367,21 +384,14 @@ glm::dmat3 exact_basis_at(const TexturedMesh& ground_truth, const Sample& sample
 /// The exact tangents of the surface, rounded to float: the best that a method can compute.
 CornerTangents exact_tangents(const TexturedMesh& ground_truth);
 
-/// One way to compute tangent frames.
-struct TangentFrameMethod {
-    std::string name;
-    std::function<CornerTangents(const Mesh&)> tangents;  ///< Empty if the shader derives frames.
-    ShaderBasis basis = ShaderBasis::as_interpolated;
+/// A method for tangent frames. Its choices are the tangents and the basis of the shader.
+using FrameMethod = MethodOn<Mesh, TangentFrames>;
 
-    /// Returns no tangents if the shader derives its frames.
-    [[nodiscard]] CornerTangents tangents_of(const Mesh& mesh) const;
-};
-
-/// mikktspace, area-weighted, lengyel, and the derived frames of screen-space.
-std::vector<TangentFrameMethod> tangent_methods();
+/// mikktspace, area-weighted, lengyel, and the derived frames of screen-space, which have no work.
+std::vector<FrameMethod> tangent_methods();
 
 /// The same method with a shader that normalizes normal and tangent.
-TangentFrameMethod made_unit(TangentFrameMethod method);
+FrameMethod made_unit(const FrameMethod& method);
 
 /// Texels tilted by 30 degrees to the right, left, up and down.
 inline constexpr std::array<glm::dvec3, 4> tilted_texels = {
@@ -389,19 +399,18 @@ inline constexpr std::array<glm::dvec3, 4> tilted_texels = {
     glm::dvec3(0.0, 0.5, 0.8660254037844386), glm::dvec3(0.0, -0.5, 0.8660254037844386)};
 
 /// The errors of the normals of tilted texels inside the triangles, in degrees.
-ErrorStats texel_errors(const TexturedMesh& ground_truth, const CornerTangents& tangents,
-                        ShaderBasis basis);
+ErrorStats texel_errors(const TexturedMesh& ground_truth, const TangentFrames& frames);
 
 /// The errors of tangents inside the triangles.
-ErrorStats inner_tangent_errors(const TexturedMesh& ground_truth, const CornerTangents& tangents,
-                                ShaderBasis basis);
+ErrorStats inner_tangent_errors(const TexturedMesh& ground_truth, const TangentFrames& frames);
 
-/// The errors of tangents at the corners of inner vertices.
-ErrorStats corner_tangent_errors(const TexturedMesh& ground_truth, const CornerTangents& tangents);
+/// The angles between tangents and the exact ones at the corners of inner vertices.
+std::vector<float> corner_tangent_angles(const TexturedMesh& ground_truth,
+                                         const CornerTangents& tangents);
 
 /// The errors of tilted normals that are baked without rounding in one basis and read in another.
-ErrorStats mismatch_errors(const TexturedMesh& ground_truth, const TangentFrameMethod& baker,
-                           const TangentFrameMethod& reader);
+ErrorStats mismatch_errors(const TexturedMesh& ground_truth, const FrameMethod& baker,
+                           const FrameMethod& reader);
 
 struct TexturedCase {
     std::string id;    ///< "torus-jittered-mirrored"

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiment_driver.h"
 #include "experiment_parts.h"
 #include "relief/accuracy/experiment.h"
 #include "relief/mesh/height_map.h"
@@ -44,13 +45,6 @@ struct Trial {
     }
 };
 
-BumpOptions options_of(const BumpMethod& method, BumpOptions bump) {
-    bump.kernel = method.kernel;
-    bump.gaussian_radius = method.gaussian_radius;
-    bump.arithmetic = method.arithmetic;
-    return bump;
-}
-
 bool is_any_destaircased(std::span<const BumpMethod> methods) {
     return std::any_of(methods.begin(), methods.end(),
                        [](const BumpMethod& method) { return method.destaircased; });
@@ -76,14 +70,14 @@ BumpReference reference_for(const BumpSample& sample, const BumpExperimentOption
     BumpReference reference;
     reference.method =
         BumpMethod{best.kernel, best.gaussian_radius, Arithmetic::float64, 32, destaircased};
-    reference.reference_degrees = best.rms_degrees;
-    reference.reference_mean_degrees = best.mean_degrees;
-    reference.reference_p99_degrees = best.p99_degrees;
-    reference.reference_max_degrees = best.max_degrees;
-    reference.upper_degrees = best.upper_rms_degrees;
-    reference.upper_mean_degrees = best.upper_mean_degrees;
-    reference.upper_p99_degrees = best.upper_p99_degrees;
-    reference.upper_max_degrees = best.upper_max_degrees;
+    reference.error = {.rms = best.rms_degrees,
+                       .mean = best.mean_degrees,
+                       .p99 = best.p99_degrees,
+                       .max = best.max_degrees};
+    reference.upper_error = {.rms = best.upper_rms_degrees,
+                             .mean = best.upper_mean_degrees,
+                             .p99 = best.upper_p99_degrees,
+                             .max = best.upper_max_degrees};
     reference.description = fmt::format(
         "the kernel selected for this map in float64{}, with an expected error of about {:.2g} "
         "degrees RMS itself; the exact normals are unknown",
@@ -94,22 +88,8 @@ BumpReference reference_for(const BumpSample& sample, const BumpExperimentOption
 void take_reference(const BumpReference& reference, Trial& trial) {
     const BumpMethod& method = *reference.method;
     const std::vector<Image>& heights = method.destaircased ? trial.smooth : trial.heights;
-    for (const Image& part : heights) {
-        Report ignored;
-        trial.ground_truth.push_back(
-            directions_of(normals_from_height(part, options_of(method, trial.bump), ignored)));
-    }
-}
-
-/// \param times  the rounds of each method
-void mark_pareto_optimal(const std::vector<std::vector<double>>& times,
-                         std::vector<BumpMeasurement>& all) {
-    std::vector<MethodCost> costs;
-    for (std::size_t i = 0; i < all.size(); ++i)
-        costs.push_back({all[i].error.rms, all[i].seconds.median, times[i]});
-    const std::vector<bool> marks = pareto_optimal(costs);
-    for (std::size_t i = 0; i < all.size(); ++i)
-        all[i].is_pareto_optimal = marks[i];
+    for (const Image& part : heights)
+        trial.ground_truth.push_back(directions_of(normals_by(method, part, trial.bump)));
 }
 
 NormalMapFormat format_of(const BumpMethod& method, NormalMapFormat format) {
@@ -127,90 +107,59 @@ void convert_parts(const Trial& trial, const BumpMethod& method, const NormalMap
                                format_of(method, format), maps[part], ignored);
 }
 
-/// Measures the times. Each round smooths the steps first, once for all methods that need it, so
-/// that their times share the drift of the machine with the others.
-void take_times(std::span<const BumpMethod> methods, const Trial& trial,
-                const BumpExperimentOptions& options, BumpExperiment& experiment) {
-    const std::size_t smoothings = is_any_destaircased(methods) ? 1 : 0;
-    std::vector<double> smoothing;
-    std::vector<std::vector<double>> times(methods.size());
-    std::vector<Image> maps;
-    interleave(smoothings + methods.size(), options.repeats, [&](std::size_t turn, bool counted) {
-        if (turn < smoothings) {
-            const double seconds = seconds_of([&] { smoothed_heights(trial); });
-            if (counted) smoothing.push_back(seconds);
-            return;
-        }
-        const std::size_t i = turn - smoothings;
-        // The first run allocates the maps, which are reused by the timed run.
-        convert_parts(trial, methods[i], options.format, maps);
-        const double seconds =
-            seconds_of([&] { convert_parts(trial, methods[i], options.format, maps); });
-        if (counted)
-            times[i].push_back(seconds + (methods[i].destaircased ? smoothing.back() : 0.0));
-    });
-    experiment.smoothing = time_statistics(smoothing);
-    const auto texels = static_cast<double>(trial.texels());
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-        BumpMeasurement& one = experiment.measurements[i];
-        one.seconds = time_statistics(times[i]);
-        if (one.seconds.median > 0.0) one.megapixels_per_second = texels / one.seconds.median / 1e6;
+/// The errors of the stored normals of all parts.
+ErrorStats conversion_error(const Trial& trial, const BumpMethod& method,
+                            const NormalMapFormat& format, std::vector<Image>& maps) {
+    convert_parts(trial, method, format, maps);
+    std::vector<float> angles;
+    for (std::size_t part = 0; part < maps.size(); ++part) {
+        Report ignored;
+        const std::vector<float> more =
+            inner_angles(decode_normal_map(maps[part], format.green, format.flat, ignored),
+                         trial.ground_truth[part], trial.margin);
+        angles.insert(angles.end(), more.begin(), more.end());
     }
-    mark_pareto_optimal(times, experiment.measurements);
+    return error_stats(std::move(angles));
 }
 
-/// Runs all methods on a trial with a ground truth.
+/// Runs all methods on a trial with a ground truth. Each round smooths the steps first, once for
+/// all methods that need it, so that their times share the drift of the machine with the others.
 void measure_methods(std::span<const BumpMethod> methods, const Trial& trial,
-                     const BumpExperimentOptions& options, BumpExperiment& experiment) {
-    experiment.measurements.resize(methods.size());
+                     const BumpExperimentOptions& options, BumpExperiment& result) {
+    const std::size_t smoothings = is_any_destaircased(methods) ? 1 : 0;
+    double smoothing = 0.0;
     std::vector<Image> maps;
+    PreparedExperiment prepared{.costs = {.one_thread = false, .memory = false}};
+    if (smoothings > 0) {
+        prepared.methods.push_back(
+            {.error = [] { return ErrorStats(); },
+             .round = [&] { return smoothing = seconds_of([&] { smoothed_heights(trial); }); }});
+    }
+    for (const BumpMethod& method : methods) {
+        const auto convert = [&] { convert_parts(trial, method, options.format, maps); };
+        prepared.methods.push_back(
+            {.error = [&] { return conversion_error(trial, method, options.format, maps); },
+             .round =
+                 [&, convert] {
+                     convert();  // Allocates the maps, which are reused by the timed run.
+                     return seconds_of(convert) + (method.destaircased ? smoothing : 0.0);
+                 }});
+    }
+    RunOptions run;
+    run.repeats = options.repeats;
+    run.is_timed = options.repeats.counted > 0;
+    const Experiment experiment = measured(std::move(prepared), run);
+    const auto times_of = [](const Measurement& one) {
+        return one.cost.all_threads ? one.cost.all_threads->spread() : TimeStatistics();
+    };
+    if (smoothings > 0) result.smoothing = times_of(experiment.measurements.front());
     for (std::size_t i = 0; i < methods.size(); ++i) {
-        convert_parts(trial, methods[i], options.format, maps);
-        std::vector<float> angles;
-        for (std::size_t part = 0; part < maps.size(); ++part) {
-            const NormalMapFormat format = format_of(methods[i], options.format);
-            Report ignored;
-            const std::vector<float> more =
-                inner_angles(decode_normal_map(maps[part], format.green, format.flat, ignored),
-                             trial.ground_truth[part], trial.margin);
-            angles.insert(angles.end(), more.begin(), more.end());
-        }
-        experiment.measurements[i].method = methods[i];
-        experiment.measurements[i].error = error_stats(std::move(angles));
+        const Measurement& one = experiment.measurements[smoothings + i];
+        const TimeStatistics times = times_of(one);
+        const double rate = static_cast<double>(trial.texels()) / times.median / 1e6;
+        result.measurements.push_back(
+            {methods[i], one.error, times, times.median > 0.0 ? rate : 0.0, one.is_pareto_optimal});
     }
-    if (options.repeats.counted > 0) take_times(methods, trial, options, experiment);
-}
-
-double error_of(const BumpMeasurement& measurement, ErrorKind kind) {
-    return measurement.error.*figure_of(kind);
-}
-
-double error_of(const BumpReference& reference, ErrorKind kind) {
-    switch (kind) {
-        case ErrorKind::mean:
-            return reference.reference_mean_degrees;
-        case ErrorKind::p99:
-            return reference.reference_p99_degrees;
-        case ErrorKind::max:
-            return reference.reference_max_degrees;
-        case ErrorKind::rms:
-            break;
-    }
-    return reference.reference_degrees;
-}
-
-double upper_error_of(const BumpReference& reference, ErrorKind kind) {
-    switch (kind) {
-        case ErrorKind::mean:
-            return reference.upper_mean_degrees;
-        case ErrorKind::p99:
-            return reference.upper_p99_degrees;
-        case ErrorKind::max:
-            return reference.upper_max_degrees;
-        case ErrorKind::rms:
-            break;
-    }
-    return reference.upper_degrees;
 }
 
 }  // namespace
@@ -332,12 +281,12 @@ BumpExperiment measure_bump(const BumpField& field, std::span<const BumpMethod> 
 
 ExpectedError expected_error(const BumpReference& reference, const BumpMeasurement& measurement,
                              ErrorKind kind) {
-    return {error_of(reference, kind), error_of(measurement, kind)};
+    return {reference.error.*figure_of(kind), measurement.error.*figure_of(kind)};
 }
 
 ExpectedError expected_error_upper(const BumpReference& reference,
                                    const BumpMeasurement& measurement, ErrorKind kind) {
-    return {upper_error_of(reference, kind), error_of(measurement, kind)};
+    return {reference.upper_error.*figure_of(kind), measurement.error.*figure_of(kind)};
 }
 
 const BumpMeasurement* cheapest_within(const BumpExperiment& experiment,
@@ -354,7 +303,8 @@ const BumpMeasurement* cheapest_within(const BumpExperiment& experiment,
 const BumpMeasurement* most_accurate(const BumpExperiment& experiment, ErrorKind kind) {
     const BumpMeasurement* least = nullptr;
     for (const BumpMeasurement& one : experiment.measurements) {
-        if (least == nullptr || error_of(one, kind) < error_of(*least, kind)) least = &one;
+        if (least == nullptr || one.error.*figure_of(kind) < least->error.*figure_of(kind))
+            least = &one;
     }
     return least;
 }

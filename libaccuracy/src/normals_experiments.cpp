@@ -43,8 +43,7 @@ ErrorStats normal_errors(std::span<const glm::vec3> normals, const AnalyticMesh&
     std::vector<float> degrees;
     for (std::size_t v = 0; v < normals.size(); ++v) {
         if (ground_truth.inner[v] == 0) continue;
-        degrees.push_back(
-            static_cast<float>(degrees_between(glm::dvec3(normals[v]), ground_truth.normals[v])));
+        degrees.push_back(angle_of(glm::dvec3(normals[v]), ground_truth.normals[v]));
     }
     return error_stats(std::move(degrees));
 }
@@ -54,7 +53,7 @@ ErrorStats fan_errors(const NormalMethod& method, int valence, std::uint32_t fan
     std::vector<float> degrees;
     for (std::uint32_t seed = 0; seed < fans; ++seed) {
         const std::vector<glm::vec3> normals = method.compute(cubic_fan(valence, seed));
-        degrees.push_back(static_cast<float>(degrees_between(glm::dvec3(normals.front()), up)));
+        degrees.push_back(angle_of(glm::dvec3(normals.front()), up));
     }
     return error_stats(std::move(degrees));
 }
@@ -121,29 +120,26 @@ std::optional<double> expected_order(const Case& one, const NormalMethod& method
 }
 
 Chart cells_chart(const Case& one, bool is_quick) {
-    Chart chart;
-    chart.id = "cells";
-    chart.title = "Finer cells";
-    chart.x_label = "cells along each parameter";
-    chart.y_label = "RMS error, degrees";
-    std::vector<int> sizes = {16, 32, 64};
+    std::vector<double> sizes = {16, 32, 64};
     // Anisotropic cells are 4 times as long, so 8 cells would leave two around a sphere.
     if (one.triangulation != Triangulation::anisotropic) sizes.insert(sizes.begin(), 8);
     if (!is_quick) sizes.insert(sizes.end(), {128, 256});
     const std::vector<NormalMethod> methods = normal_methods(float64_alone);
-    std::vector<std::vector<CurvePoint>> points(methods.size());
-    for (const int cells : sizes) {
-        const AnalyticMesh ground_truth =
-            analytic_mesh(one.surface, one.triangulation, cells, tables_seed);
-        for (std::size_t m = 0; m < methods.size(); ++m) {
-            const auto errors = normal_errors(methods[m].compute(ground_truth.mesh), ground_truth);
-            points[m].push_back({static_cast<double>(cells), curve_error(errors)});
-        }
-    }
-    for (std::size_t m = 0; m < methods.size(); ++m) {
-        chart.curves.push_back(
-            fitted_curve(methods[m].name, std::move(points[m]), expected_order(one, methods[m])));
-    }
+    Chart chart = chart_over(
+        {.id = "cells",
+         .title = "Finer cells",
+         .x_label = "cells along each parameter",
+         .y_label = "RMS error, degrees"},
+        names_of(methods), sizes,
+        [&](double cells) {
+            return analytic_mesh(one.surface, one.triangulation, static_cast<int>(cells),
+                                 tables_seed);
+        },
+        [&](std::size_t i, const AnalyticMesh& ground_truth) {
+            return curve_error(normal_errors(methods[i].compute(ground_truth.mesh), ground_truth));
+        });
+    for (std::size_t i = 0; i < methods.size(); ++i)
+        fit(chart.curves[i], expected_order(one, methods[i]));
     return chart;
 }
 
@@ -151,7 +147,6 @@ Chart cells_chart(const Case& one, bool is_quick) {
 PreparedExperiment on_mesh(AnalyticMesh mesh, const std::string& input) {
     const auto ground_truth = std::make_shared<const AnalyticMesh>(std::move(mesh));
     const auto triangles = static_cast<double>(ground_truth->mesh.triangles.size());
-    const std::vector<NormalMethod> methods = normal_methods(both_arithmetics);
     PreparedExperiment prepared;
     prepared.report = {
         .ground_truth =
@@ -161,17 +156,11 @@ PreparedExperiment on_mesh(AnalyticMesh mesh, const std::string& input) {
         .error_unit = "degrees",
         .item = "triangle",
         .items = triangles};
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-        const auto& normals = methods[i].compute;
-        prepared.methods.push_back(
-            {.name = methods[i].name,
-             .choices = methods[i].choices,
-             .error =
-                 [ground_truth, normals] {
-                     return normal_errors(normals(ground_truth->mesh), *ground_truth);
-                 },
-             .work = [ground_truth, normals] { normals(ground_truth->mesh); }});
-    }
+    prepared.methods =
+        methods_on(std::shared_ptr<const Mesh>(ground_truth, &ground_truth->mesh),
+                   normal_methods(both_arithmetics), [ground_truth](const NormalMethod& method) {
+                       return normal_errors(method.compute(ground_truth->mesh), *ground_truth);
+                   });
     return prepared;
 }
 
@@ -204,22 +193,18 @@ constexpr int usual_valence = 6;
 /// The error over the number of neighbors. \param experiment  has measured the usual number
 Chart neighbors_chart(const Experiment& experiment, const std::vector<NormalMethod>& methods,
                       std::uint32_t fans) {
-    Chart chart{.id = "neighbours",
-                .title = "More neighbors",
-                .x_label = "neighbors of the vertex",
-                .y_label = "RMS error, degrees",
-                .is_x_log = false};
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-        Curve& curve = chart.curves.emplace_back();
-        curve.method = methods[i].name;
-        for (int valence = 3; valence <= 9; ++valence) {
-            const ErrorStats errors = valence == usual_valence
-                                          ? experiment.measurements.at(i).error
-                                          : fan_errors(methods[i], valence, fans);
-            curve.points.push_back({static_cast<double>(valence), curve_error(errors)});
-        }
-    }
-    return chart;
+    return chart_over(
+        {.id = "neighbours",
+         .title = "More neighbors",
+         .x_label = "neighbors of the vertex",
+         .y_label = "RMS error, degrees",
+         .is_x_log = false},
+        names_of(methods), {3, 4, 5, 6, 7, 8, 9},
+        [](double valence) { return static_cast<int>(valence); },
+        [&](std::size_t i, int valence) {
+            return curve_error(valence == usual_valence ? experiment.measurements.at(i).error
+                                                        : fan_errors(methods[i], valence, fans));
+        });
 }
 
 PreparedExperiment on_fans(bool is_quick) {
@@ -238,11 +223,9 @@ PreparedExperiment on_fans(bool is_quick) {
         .error_unit = "degrees",
         .item = "fan",
         .items = static_cast<double>(fans)};
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-        prepared.methods.push_back({.name = methods[i].name,
-                                    .choices = methods[i].choices,
-                                    .error = [method = methods[i], fans] {
-                                        return fan_errors(method, usual_valence, fans);
+    for (const NormalMethod& one : methods) {
+        prepared.methods.push_back({.name = one.name, .choices = one.choices, .error = [one, fans] {
+                                        return fan_errors(one, usual_valence, fans);
                                     }});
     }
     prepared.finish = [methods, fans](Experiment& report) {

@@ -222,22 +222,24 @@ Chart roughness_chart(const GlDevice& device, const Balls& balls, bool is_quick)
     const int size = is_quick ? quick_ball_size / 2 : full_ball_size;
     std::vector<double> roughnesses = {0.1, 0.2, 0.3, 0.5, 1.0};
     if (!is_quick) roughnesses = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0};
-    Chart chart{.id = "roughness",
-                .title = "Error by roughness",
-                .x_label = "roughness",
-                .y_label = "FLIP",
-                .is_x_log = false};
-    for (const RenderedMethod& method : balls.methods(roughnesses.front()))
-        chart.curves.push_back({.method = method.name});
-    for (const double roughness : roughnesses) {
-        const Image ground_truth =
-            supersampled_reference(mirror_ball(balls.finest, roughness), size, 1);
-        const std::vector<RenderedMethod> methods = balls.methods(roughness);
-        for (std::size_t i = 0; i < methods.size(); ++i)
-            chart.curves[i].points.push_back(
-                {roughness, rendered_error(device, methods[i], ground_truth)});
-    }
-    return chart;
+    struct Input {
+        Image ground_truth;
+        std::vector<RenderedMethod> methods;
+    };
+    return chart_over(
+        {.id = "roughness",
+         .title = "Error by roughness",
+         .x_label = "roughness",
+         .y_label = "FLIP",
+         .is_x_log = false},
+        names_of(balls.methods(0.0)), roughnesses,
+        [&](double roughness) {
+            return Input{supersampled_reference(mirror_ball(balls.finest, roughness), size, 1),
+                         balls.methods(roughness)};
+        },
+        [&](std::size_t i, const Input& input) {
+            return rendered_error(device, input.methods[i], input.ground_truth);
+        });
 }
 
 }  // namespace

@@ -71,10 +71,7 @@ PreparedExperiment interpolation_experiment(const PlanOptions& options) {
         device, std::move(experiment), interpolation_methods(),
         supersampled_reference(lit_torus(smooth_torus_slices, Interpolation::per_pixel), size, 1),
         [](Experiment& report, const Renderings& renderings) {
-            std::vector<std::string> names;
-            for (const LightingChoice& choice : lighting_choices)
-                names.emplace_back(choice.name);
-            report.charts = {torus_chart(report, names, lighting_slices)};
+            report.charts = {torus_chart(report, names_of(lighting_choices), lighting_slices)};
             for (std::size_t i = 1; i < renderings.methods.size(); i += lighting_slices.size())
                 add_images("Lighting per face, vertex and pixel", renderings, i, 0.5, report);
         },
@@ -143,23 +140,27 @@ std::vector<RenderedMethod> highlight_methods(double roughness) {
     return methods;
 }
 
+/// A ground truth with the value of x for which it was made.
+struct TruthAt {
+    double x;
+    Image ground_truth;
+};
+
 Chart chart_of(const GlDevice& device, int size) {
-    Chart chart{.id = "roughness",
-                .title = "Error by roughness",
-                .x_label = "roughness",
-                .y_label = "FLIP",
-                .is_x_log = false};
-    for (const HighlightChoice& choice : highlight_choices)
-        chart.curves.push_back({.method = choice.name});
-    for (const double roughness : {0.2, 0.3, 0.4, 0.5, 0.6}) {
-        const Image ground_truth = supersampled_reference(metal(roughness), size, 1);
-        for (std::size_t i = 0; i < highlight_choices.size(); ++i) {
-            chart.curves[i].points.push_back(
-                {roughness, rendered_error(device, method_of(highlight_choices.at(i), roughness),
-                                           ground_truth)});
-        }
-    }
-    return chart;
+    return chart_over(
+        {.id = "roughness",
+         .title = "Error by roughness",
+         .x_label = "roughness",
+         .y_label = "FLIP",
+         .is_x_log = false},
+        names_of(highlight_choices), {0.2, 0.3, 0.4, 0.5, 0.6},
+        [&](double roughness) {
+            return TruthAt{roughness, supersampled_reference(metal(roughness), size, 1)};
+        },
+        [&](std::size_t i, const TruthAt& at) {
+            return rendered_error(device, method_of(highlight_choices.at(i), at.x),
+                                  at.ground_truth);
+        });
 }
 
 PreparedExperiment highlight_experiment(const PlanOptions& options) {
@@ -266,24 +267,22 @@ double distance_for(double texels_per_pixel, int size) {
 
 /// \param size  of the images; nearly all of the time goes into the rays of the ground truth
 Chart distance_chart(const GlDevice& device, const Image& map, int size, int rays) {
-    Chart chart{.id = "distance",
-                .title = "Error by texels along a pixel",
-                .x_label = "texels along a pixel",
-                .y_label = "FLIP"};
-    constexpr std::array methods = {averaged_normals, averaged_4_pixels, toksvig};
-    for (const std::size_t method : methods)
-        chart.curves.push_back({.method = aliasing_choices.at(method).name});
-    for (const double texels_per_pixel : {0.5, 1.0, 2.0, 4.0, 8.0, 16.0}) {
-        const double distance = distance_for(texels_per_pixel, size);
-        const Image ground_truth = supersampled_reference(plane(map, false, distance), size, rays);
-        for (std::size_t i = 0; i < chart.curves.size(); ++i) {
-            const RenderedMethod method =
-                method_of(aliasing_choices.at(methods.at(i)), map, distance);
-            chart.curves[i].points.push_back(
-                {texels_per_pixel, rendered_error(device, method, ground_truth)});
-        }
-    }
-    return chart;
+    constexpr std::array methods = {aliasing_choices[averaged_normals],
+                                    aliasing_choices[averaged_4_pixels], aliasing_choices[toksvig]};
+    return chart_over(
+        {.id = "distance",
+         .title = "Error by texels along a pixel",
+         .x_label = "texels along a pixel",
+         .y_label = "FLIP"},
+        names_of(methods), {0.5, 1.0, 2.0, 4.0, 8.0, 16.0},
+        [&](double texels_per_pixel) {
+            const double distance = distance_for(texels_per_pixel, size);
+            return TruthAt{distance,
+                           supersampled_reference(plane(map, false, distance), size, rays)};
+        },
+        [&](std::size_t i, const TruthAt& at) {
+            return rendered_error(device, method_of(methods.at(i), map, at.x), at.ground_truth);
+        });
 }
 
 PreparedExperiment specular_aliasing_experiment(const PlanOptions& options) {

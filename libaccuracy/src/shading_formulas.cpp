@@ -222,21 +222,24 @@ Chart chart_by_incidence() {
 }
 
 Chart index_chart(std::span<const float> cosines) {
-    Chart chart{.id = "index",
-                .title = "Error by index of refraction",
-                .x_label = "index of refraction",
-                .y_label = "reflectance",
-                .is_x_log = false};
-    for (const FormulaMethod& method : fresnel_methods(1.5, cosines))
-        chart.curves.push_back({.method = method.name});
-    for (const double index : {1.1, 1.2, 1.33, 1.4, 1.5, 1.6, 1.8, 2.0, 2.42, 3.0, 3.5, 4.0}) {
-        const std::vector<FormulaMethod> methods = fresnel_methods(index, cosines);
-        const std::vector<double> ground_truth = exact_reflectances(index, cosines);
-        for (std::size_t i = 0; i < methods.size(); ++i)
-            chart.curves[i].points.push_back(
-                {index, curve_error(formula_error(methods[i], ground_truth))});
-    }
-    return chart;
+    struct Input {
+        std::vector<FormulaMethod> methods;
+        std::vector<double> ground_truth;
+    };
+    return chart_over(
+        {.id = "index",
+         .title = "Error by index of refraction",
+         .x_label = "index of refraction",
+         .y_label = "reflectance",
+         .is_x_log = false},
+        names_of(fresnel_methods(1.5, cosines)),
+        {1.1, 1.2, 1.33, 1.4, 1.5, 1.6, 1.8, 2.0, 2.42, 3.0, 3.5, 4.0},
+        [&](double index) {
+            return Input{fresnel_methods(index, cosines), exact_reflectances(index, cosines)};
+        },
+        [](std::size_t i, const Input& input) {
+            return curve_error(formula_error(input.methods[i], input.ground_truth));
+        });
 }
 
 Experiment described(const Boundary& boundary, std::size_t angles) {
@@ -370,21 +373,17 @@ std::vector<FormulaMethod> unit_normal_methods(const NormalSamples& samples) {
 namespace {
 
 Chart chart_by_turn() {
-    Chart chart{.id = "angle",
-                .title = "Error by the angle between neighboring normals",
-                .x_label = "degrees between the normals of a triangle's corners",
-                .y_label = "radiance"};
-    const NormalSamples first(1.0, 32);
-    for (const FormulaMethod& method : unit_normal_methods(first))
-        chart.curves.push_back({.method = method.name});
-    for (const double degrees : {1.0, 2.0, 4.0, 8.0, 15.0, 30.0, 60.0, 90.0}) {
-        const NormalSamples samples(degrees, 32);
-        const std::vector<FormulaMethod> methods = unit_normal_methods(samples);
-        const std::vector<double> ground_truth = samples.exact_radiances();
-        for (std::size_t i = 0; i < methods.size(); ++i)
-            chart.curves[i].points.push_back(
-                {degrees, formula_error(methods[i], ground_truth).rms});
-    }
+    Chart chart = chart_over(
+        {.id = "angle",
+         .title = "Error by the angle between neighboring normals",
+         .x_label = "degrees between the normals of a triangle's corners",
+         .y_label = "radiance"},
+        names_of(unit_normal_methods(NormalSamples(1.0, 1))),
+        {1.0, 2.0, 4.0, 8.0, 15.0, 30.0, 60.0, 90.0},
+        [](double degrees) { return NormalSamples(degrees, 32); },
+        [](std::size_t i, const NormalSamples& samples) {
+            return formula_error(unit_normal_methods(samples)[i], samples.exact_radiances()).rms;
+        });
     // The length of a chord is too short by the square of its angle, and a Newton step squares that
     // error again. Both hold for small angles, as long as rounding to float is negligible.
     chart.curves[0].expected_order = 2.0;
@@ -415,8 +414,7 @@ PreparedExperiment unit_normal_experiment(const PlanOptions&) {
         .items = static_cast<double>(samples->count())};
     PreparedExperiment prepared = formula_experiment(
         std::move(experiment), samples, unit_normal_methods(*samples), samples->exact_radiances());
-    for (const Method& method : prepared.methods)
-        prepared.compared.push_back(method.name);
+    prepared.compared = names_of(prepared.methods);
     prepared.finish = [](Experiment& report) { report.charts = {chart_by_turn()}; };
     return prepared;
 }

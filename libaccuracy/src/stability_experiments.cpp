@@ -43,27 +43,25 @@ std::string breaks_of(const Chart& chart) {
 
 }  // namespace
 
-Sweeps::Sweeps(std::vector<std::string> methods, double bound)
-    : methods_(std::move(methods)), bound_(bound) {}
-
-void Sweeps::add(const std::string& id, const std::string& title, const std::string& x_label,
-                 int decades, int step, Errors errors) {
-    charts_.push_back({.id = id,
-                       .title = title,
-                       .x_label = x_label,
-                       .y_label = "RMS error, degrees",
-                       .bound = bound_});
-    values_.push_back({decades, step, std::move(errors)});
+Sweeps::Sweeps(std::vector<std::string> methods, double bound, std::vector<Sweep> sweeps)
+    : methods_(std::move(methods)), bound_(bound), sweeps_(std::move(sweeps)) {
+    for (const Sweep& one : sweeps_) {
+        charts_.push_back({.id = one.id,
+                           .title = one.title,
+                           .x_label = one.x_label,
+                           .y_label = "RMS error, degrees",
+                           .bound = bound_});
+    }
 }
 
 ErrorStats Sweeps::measure(std::size_t method) {
     std::vector<float> all;
-    for (std::size_t i = 0; i < charts_.size(); ++i) {
-        const Values& values = values_[i];
+    for (std::size_t i = 0; i < sweeps_.size(); ++i) {
+        const Sweep& sweep = sweeps_[i];
         Curve curve{.method = methods_[method]};
-        for (int decade = 0; decade <= values.decades; decade += values.step) {
+        for (int decade = 0; decade <= sweep.decades; decade += sweep.step) {
             const double value = std::pow(10.0, decade);
-            const std::vector<float> degrees = values.errors(method, value);
+            const std::vector<float> degrees = sweep.errors(method, value);
             all.insert(all.end(), degrees.begin(), degrees.end());
             const double error = curve_error(error_stats(degrees));
             curve.points.push_back({value, error});
@@ -83,44 +81,44 @@ std::string Sweeps::breaks() const {
 
 namespace {
 
-using TangentsMethod = MethodOn<Mesh, CornerTangents>;
-using SlopesMethod = MethodOn<WaveMap, Image>;
-
-template <typename Method>
-std::vector<std::string> names_of(const std::vector<Method>& methods) {
-    std::vector<std::string> names;
-    for (const Method& one : methods)
-        names.push_back(one.name);
-    return names;
-}
+/// Methods, and the input whose changes they are swept over.
+template <typename Truth, typename Input, typename Result>
+struct Swept {
+    Truth ground_truth;
+    std::vector<MethodOn<Input, Result>> methods;
+};
+using SweptNormals = Swept<AnalyticMesh, Mesh, std::vector<glm::vec3>>;
+using SweptTangents = Swept<TexturedMesh, Mesh, TangentFrames>;
+using SweptSlopes = Swept<WaveMap, WaveMap, Image>;
 
 /// An experiment whose methods have their errors in all sweeps and their time on one thread. Its
 /// finding gives the values at which methods fail.
 ///
-/// \param methods  in the order of the sweeps
+/// \param report  the input is completed with `unchanged`, the value at which methods are timed
+/// \param functions  in the order of the sweeps
 /// \param input  the input on which methods are timed
 /// \param advice  a sentence for the finding, after a space
 template <typename Input, typename Result>
-PreparedExperiment swept_experiment(Experiment report,
-                                    const std::vector<MethodOn<Input, Result>>& methods,
-                                    Sweeps all_sweeps, std::shared_ptr<const Input> input,
-                                    const std::string& advice = {}) {
-    const auto sweeps = std::make_shared<Sweeps>(std::move(all_sweeps));
+PreparedExperiment swept_experiment(Experiment report, const std::string& unchanged,
+                                    std::vector<MethodOn<Input, Result>> functions,
+                                    const std::shared_ptr<const Input>& input,
+                                    std::vector<Sweep> all_sweeps, const std::string& advice = {}) {
+    const std::vector<std::string> names = names_of(functions);
+    const auto sweeps = std::make_shared<Sweeps>(names, broken_degrees, std::move(all_sweeps));
+    for (MethodOn<Input, Result>& one : functions) {
+        one.choices.emplace_back("guarded", one.is_textbook ? "no" : "yes");
+        if (one.is_textbook)
+            one.note = "Textbook code without guards, which is not part of relief, for contrast.";
+    }
     PreparedExperiment prepared;
     prepared.report = std::move(report);
+    prepared.report.input +=
+        fmt::format("; the errors are those of all together, the times those {}", unchanged);
     prepared.report.error_unit = "degrees";
     prepared.costs = {.all_threads = false, .memory = false};
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-        Method& method = prepared.methods.emplace_back();
-        method.name = methods[i].name;
-        method.choices = methods[i].choices;
-        method.choices.emplace_back("guarded", methods[i].is_textbook ? "no" : "yes");
-        method.error = [sweeps, i] { return sweeps->measure(i); };
-        method.work = [input, compute = methods[i].compute] { compute(*input); };
-        if (methods[i].is_textbook)
-            method.note =
-                "Textbook code without guards, which is not part of relief, for contrast.";
-    }
+    prepared.methods = methods_on(input, functions, [](const auto&) { return ErrorStats(); });
+    for (std::size_t i = 0; i < functions.size(); ++i)
+        prepared.methods[i].error = [sweeps, i] { return sweeps->measure(i); };
     prepared.finish = [sweeps, advice](Experiment& finished) {
         finished.charts = sweeps->charts();
         finished.finding = fmt::format(
@@ -131,11 +129,16 @@ PreparedExperiment swept_experiment(Experiment report,
     return prepared;
 }
 
-/// Sets the unit of work of an experiment on a mesh.
-Experiment on_triangles(Experiment report, const Mesh& mesh) {
+/// The same for a mesh with a ground truth.
+template <typename Truth, typename Result>
+PreparedExperiment on_mesh(Experiment report, const std::string& unchanged,
+                           const std::shared_ptr<const Swept<Truth, Mesh, Result>>& swept,
+                           std::vector<Sweep> sweeps, const std::string& advice = {}) {
+    const Mesh& mesh = swept->ground_truth.mesh;
     report.item = "triangle";
     report.items = static_cast<double>(mesh.triangles.size());
-    return report;
+    return swept_experiment(std::move(report), unchanged, swept->methods,
+                            std::shared_ptr<const Mesh>(swept, &mesh), std::move(sweeps), advice);
 }
 
 constexpr const char* torus_ground_truth =
@@ -166,8 +169,7 @@ std::vector<float> normal_degrees(const std::vector<glm::vec3>& normals,
                                   const std::vector<glm::dvec3>& ground_truth) {
     std::vector<float> degrees;
     for (std::size_t v = 0; v < ground_truth.size(); ++v)
-        degrees.push_back(
-            static_cast<float>(degrees_between(glm::dvec3(normals[v]), ground_truth[v])));
+        degrees.push_back(angle_of(glm::dvec3(normals[v]), ground_truth[v]));
     return degrees;
 }
 
@@ -186,72 +188,60 @@ struct Change {
     }
 };
 
+std::shared_ptr<const SweptNormals> swept_torus(bool is_quick) {
+    return std::make_shared<const SweptNormals>(
+        SweptNormals{analytic_mesh(AnalyticSurface::torus, Triangulation::regular,
+                                   torus_cells(is_quick), torus_seed),
+                     swept_normal_methods()});
+}
+
+/// The errors of normals on a torus that is changed by the value of a sweep.
+/// \param changed  its first vertices are those of the torus
+auto on_changed_torus(const std::shared_ptr<const SweptNormals>& torus,
+                      std::function<Mesh(const Mesh& mesh, double value)> changed) {
+    return [torus, changed = std::move(changed)](std::size_t method, double value) {
+        return normal_degrees(
+            torus->methods[method].compute(changed(torus->ground_truth.mesh, value)),
+            torus->ground_truth.normals);
+    };
+}
+
 Mesh with_positions(Mesh mesh, const Change& change) {
     change.apply(mesh.positions);
     return mesh;
 }
 
-/// A mesh and the methods that are swept on it.
-struct NormalsInput {
-    AnalyticMesh ground_truth;
-    std::vector<NormalMethod> methods = swept_normal_methods();
-
-    /// The errors of a method on a mesh whose first vertices are those of the ground truth.
-    [[nodiscard]] std::vector<float> degrees(std::size_t method, const Mesh& mesh) const {
-        return normal_degrees(methods[method].compute(mesh), ground_truth.normals);
-    }
-};
-
-std::shared_ptr<const NormalsInput> swept_torus(bool is_quick) {
-    return std::make_shared<const NormalsInput>(NormalsInput{analytic_mesh(
-        AnalyticSurface::torus, Triangulation::regular, torus_cells(is_quick), torus_seed)});
-}
-
-PreparedExperiment normals_experiment(Experiment report,
-                                      const std::shared_ptr<const NormalsInput>& input,
-                                      Sweeps sweeps, const std::string& advice = {}) {
-    const Mesh& mesh = input->ground_truth.mesh;
-    return swept_experiment(on_triangles(std::move(report), mesh), input->methods,
-                            std::move(sweeps), std::shared_ptr<const Mesh>(input, &mesh), advice);
-}
-
 PreparedExperiment normals_by_scale(bool is_quick) {
-    const auto input = swept_torus(is_quick);
-    Sweeps sweeps(names_of(input->methods), broken_degrees);
-    const auto scaled = [input](bool is_larger) {
-        return [input, is_larger](std::size_t method, double value) {
-            return input->degrees(method,
-                                  with_positions(input->ground_truth.mesh,
-                                                 {.scale = is_larger ? value : 1.0 / value}));
-        };
-    };
-    sweeps.add("smaller", "Smaller", "times smaller than radius 1", 30, 2, scaled(false));
-    sweeps.add("larger", "Larger", "times larger than radius 1", 30, 2, scaled(true));
-    return normals_experiment(
-        {.question = "At which scales of a mesh are its normals accurate?",
-         .ground_truth = torus_ground_truth,
-         .input =
-             fmt::format("torus of {} triangles at 31 scales from 1e-30 to 1e30; the errors are "
-                         "those of all together, the times those at scale 1",
-                         input->ground_truth.mesh.triangles.size())},
-        input, std::move(sweeps));
+    const auto torus = swept_torus(is_quick);
+    return on_mesh({.question = "At which scales of a mesh are its normals accurate?",
+                    .ground_truth = torus_ground_truth,
+                    .input = fmt::format("torus of {} triangles at 31 scales from 1e-30 to 1e30",
+                                         torus->ground_truth.mesh.triangles.size())},
+                   "at scale 1", torus,
+                   {{"smaller", "Smaller", "times smaller than radius 1", 30, 2,
+                     on_changed_torus(torus,
+                                      [](const Mesh& mesh, double value) {
+                                          return with_positions(mesh, {.scale = 1.0 / value});
+                                      })},
+                    {"larger", "Larger", "times larger than radius 1", 30, 2,
+                     on_changed_torus(torus, [](const Mesh& mesh, double value) {
+                         return with_positions(mesh, {.scale = value});
+                     })}});
 }
 
 PreparedExperiment normals_by_offset(bool is_quick) {
-    const auto input = swept_torus(is_quick);
-    Sweeps sweeps(names_of(input->methods), broken_degrees);
-    sweeps.add("offset", "Farther away", "distance along each axis, in radii of the torus", 8, 1,
-               [input](std::size_t method, double value) {
-                   return input->degrees(
-                       method, with_positions(input->ground_truth.mesh, {.offset = value}));
-               });
-    return normals_experiment(
+    const auto torus = swept_torus(is_quick);
+    return on_mesh(
         {.question = "At which distances of a mesh from the origin are its normals accurate?",
          .ground_truth = torus_ground_truth,
-         .input = fmt::format("torus of {} triangles at 9 distances from 1 to 1e8; the errors are "
-                              "those of all together, the times those at the origin",
-                              input->ground_truth.mesh.triangles.size())},
-        input, std::move(sweeps),
+         .input = fmt::format("torus of {} triangles at 9 distances from 1 to 1e8",
+                              torus->ground_truth.mesh.triangles.size())},
+        "at the origin", torus,
+        {{"offset", "Farther away", "distance along each axis, in radii of the torus", 8, 1,
+          on_changed_torus(torus,
+                           [](const Mesh& mesh, double value) {
+                               return with_positions(mesh, {.offset = value});
+                           })}},
         " float64 is exact for the given positions: its error is that of rounding the positions to "
         "float, which no method can undo. Move meshes to the origin before storing them.");
 }
@@ -259,38 +249,35 @@ PreparedExperiment normals_by_offset(bool is_quick) {
 PreparedExperiment normals_of_needles(bool is_quick) {
     const std::size_t count = is_quick ? 1000 : 4000;
     const auto methods = std::make_shared<const std::vector<NormalMethod>>(swept_normal_methods());
-    Sweeps sweeps(names_of(*methods), broken_degrees);
-    sweeps.add("width", "Narrower", "length over width", 12, 1,
-               [methods, count](std::size_t method, double value) {
-                   const Needles needles = make_needles(count, 1.0 / value, needles_seed);
-                   return normal_degrees((*methods)[method].compute(needles.mesh), needles.normals);
-               });
+    const auto by_width = [methods, count](std::size_t method, double value) {
+        const Needles needles = make_needles(count, 1.0 / value, needles_seed);
+        return normal_degrees((*methods)[method].compute(needles.mesh), needles.normals);
+    };
     const auto wide = std::make_shared<const Mesh>(make_needles(count, 1.0, needles_seed).mesh);
-    Experiment report{
-        .question = "At which widths of a triangle is its normal accurate?",
-        .ground_truth =
-            "The cross product of the float corners in double; two of them are so near to the "
-            "origin that nothing cancels. A test verifies it in integers.",
-        .input =
-            fmt::format("{} single triangles at 13 widths from 1 to 1e-12 of their length; the "
-                        "errors are those of all together, the times those at width 1",
-                        count)};
-    return swept_experiment(on_triangles(std::move(report), *wide), *methods, std::move(sweeps),
-                            wide);
+    return swept_experiment(
+        {.question = "At which widths of a triangle is its normal accurate?",
+         .ground_truth =
+             "The cross product of the float corners in double; two of them are so near to the "
+             "origin that nothing cancels. A test verifies it in integers.",
+         .input =
+             fmt::format("{} single triangles at 13 widths from 1 to 1e-12 of their length", count),
+         .item = "triangle",
+         .items = static_cast<double>(wide->triangles.size())},
+        "at width 1", *methods, wide,
+        {{"width", "Narrower", "length over width", 12, 1, by_width}});
 }
 
 PreparedExperiment normals_beside_hard_triangles(bool is_quick) {
-    const auto input = swept_torus(is_quick);
-    Sweeps sweeps(names_of(input->methods), broken_degrees);
+    const auto torus = swept_torus(is_quick);
+    std::vector<Sweep> sweeps;
     for (const HardTriangleName& one : hard_triangle_names) {
-        sweeps.add(one.id, one.title, "number of hard triangles", 3, 1,
-                   [input, kind = one.kind](std::size_t method, double count) {
-                       return input->degrees(method,
-                                             with_hard_triangles(input->ground_truth.mesh, kind,
-                                                                 static_cast<std::size_t>(count)));
-                   });
+        sweeps.push_back(
+            {one.id, one.title, "number of hard triangles", 3, 1,
+             on_changed_torus(torus, [kind = one.kind](const Mesh& mesh, double count) {
+                 return with_hard_triangles(mesh, kind, static_cast<std::size_t>(count));
+             })});
     }
-    return normals_experiment(
+    return on_mesh(
         {.question = "With how many triangles of the hard-case catalogue are the normals around "
                      "them accurate?",
          .ground_truth =
@@ -298,159 +285,112 @@ PreparedExperiment normals_beside_hard_triangles(bool is_quick) {
                          "therefore not part of the surface.",
                          torus_ground_truth),
          .input = fmt::format("torus of {} triangles with 1 to 1000 added hard triangles of five "
-                              "kinds; the errors are those of all together, the times those "
-                              "without them",
-                              input->ground_truth.mesh.triangles.size())},
-        input, std::move(sweeps));
-}
-
-/// The methods with stored tangents, and textbook code.
-std::vector<TangentsMethod> swept_tangent_methods() {
-    std::vector<TangentsMethod> methods;
-    for (const TangentFrameMethod& method : tangent_methods()) {
-        if (method.tangents)
-            methods.push_back({method.name, {{"frames", method.name}}, method.tangents});
-    }
-    methods.push_back({"plain", {{"frames", "plain"}}, textbook_tangents, true});
-    return methods;
+                              "kinds",
+                              torus->ground_truth.mesh.triangles.size())},
+        "without them", torus, std::move(sweeps));
 }
 
 constexpr const char* textured_torus_ground_truth =
     "The exact tangents of the textured torus in closed form, which do not depend on scale and "
     "position. Tests verify them by numerical differentiation of the surface.";
 
-/// The errors of a method on a mesh with changed positions and texture coordinates.
-std::vector<float> tangent_degrees(const TangentsMethod& method, const TexturedMesh& ground_truth,
-                                   const Change& positions, const Change& texcoords) {
-    Mesh mesh = ground_truth.mesh;
-    positions.apply(mesh.positions);
-    texcoords.apply(mesh.texcoords);
-    const CornerTangents actual = method.compute(mesh);
-    const CornerTangents expected = exact_tangents(ground_truth);
-    std::vector<float> degrees;
-    for (std::size_t corner = 0; corner < actual.size(); ++corner) {
-        const std::uint32_t vertex =
-            ground_truth.mesh.triangles[corner / 3][static_cast<glm::length_t>(corner % 3)];
-        if (ground_truth.inner[vertex] == 0) continue;
-        degrees.push_back(static_cast<float>(
-            degrees_between(glm::dvec3(actual[corner]), glm::dvec3(expected[corner]))));
+/// The methods with stored tangents and textbook code, on a textured torus.
+std::shared_ptr<const SweptTangents> textured_torus(bool is_quick) {
+    std::vector<FrameMethod> methods;
+    for (FrameMethod& method : tangent_methods()) {
+        method.choices = {{"frames", method.name}};
+        method.stored_bytes = 0.0;
+        if (method.has_work) methods.push_back(std::move(method));
     }
-    return degrees;
+    methods.push_back({"plain",
+                       {{"frames", "plain"}},
+                       [](const Mesh& mesh) { return TangentFrames{textbook_tangents(mesh)}; },
+                       true});
+    return std::make_shared<const SweptTangents>(
+        SweptTangents{textured_mesh(AnalyticSurface::torus, Triangulation::regular,
+                                    TextureLayout::upright, torus_cells(is_quick), 1),
+                      std::move(methods)});
 }
 
-/// A textured mesh and the methods that are swept on it.
-struct TangentsInput {
-    TexturedMesh ground_truth;
-    std::vector<TangentsMethod> methods = swept_tangent_methods();
-
-    [[nodiscard]] std::vector<float> degrees(std::size_t method, const Change& positions,
-                                             const Change& texcoords) const {
-        return tangent_degrees(methods[method], ground_truth, positions, texcoords);
-    }
-};
-
-std::shared_ptr<const TangentsInput> textured_torus(bool is_quick) {
-    return std::make_shared<const TangentsInput>(
-        TangentsInput{textured_mesh(AnalyticSurface::torus, Triangulation::regular,
-                                    TextureLayout::upright, torus_cells(is_quick), 1)});
-}
-
-PreparedExperiment tangents_experiment(Experiment report,
-                                       const std::shared_ptr<const TangentsInput>& input,
-                                       Sweeps sweeps) {
-    const Mesh& mesh = input->ground_truth.mesh;
-    return swept_experiment(on_triangles(std::move(report), mesh), input->methods,
-                            std::move(sweeps), std::shared_ptr<const Mesh>(input, &mesh));
+/// The errors of tangents on a torus whose positions or texture coordinates are changed by the
+/// value of a sweep.
+template <typename Vector>
+auto on_changed(std::vector<Vector> Mesh::*values,
+                const std::shared_ptr<const SweptTangents>& torus, Change (*change)(double value)) {
+    return [=](std::size_t method, double value) {
+        Mesh mesh = torus->ground_truth.mesh;
+        change(value).apply(mesh.*values);
+        return corner_tangent_angles(torus->ground_truth,
+                                     torus->methods[method].compute(mesh).tangents);
+    };
 }
 
 PreparedExperiment tangents_by_scale(bool is_quick) {
-    const auto input = textured_torus(is_quick);
-    Sweeps sweeps(names_of(input->methods), broken_degrees);
-    const auto add = [&](const char* id, const char* title, const char* label, bool is_image,
-                         bool is_larger) {
-        sweeps.add(id, title, label, 30, 2,
-                   [input, is_image, is_larger](std::size_t method, double value) {
-                       const Change change{.scale = is_larger ? value : 1.0 / value};
-                       return is_image ? input->degrees(method, {}, change)
-                                       : input->degrees(method, change, {});
-                   });
-    };
-    add("smaller", "Smaller meshes", "times smaller than radius 1", false, false);
-    add("larger", "Larger meshes", "times larger than radius 1", false, true);
-    add("smaller-image", "Smaller texture coordinates", "times smaller than one image", true,
-        false);
-    add("larger-image", "Larger texture coordinates", "times larger than one image", true, true);
-    return tangents_experiment(
+    const auto torus = textured_torus(is_quick);
+    const auto smaller = [](double value) { return Change{.scale = 1.0 / value}; };
+    const auto larger = [](double value) { return Change{.scale = value}; };
+    return on_mesh(
         {.question = "At which scales of a mesh and its texture coordinates are tangents accurate?",
          .ground_truth = textured_torus_ground_truth,
          .input = fmt::format("torus of {} triangles, its positions and its texture coordinates at "
-                              "31 scales each from 1e-30 to 1e30; the errors are those of all "
-                              "together, the times those at scale 1",
-                              input->ground_truth.mesh.triangles.size())},
-        input, std::move(sweeps));
+                              "31 scales each from 1e-30 to 1e30",
+                              torus->ground_truth.mesh.triangles.size())},
+        "at scale 1", torus,
+        {{"smaller", "Smaller meshes", "times smaller than radius 1", 30, 2,
+          on_changed(&Mesh::positions, torus, smaller)},
+         {"larger", "Larger meshes", "times larger than radius 1", 30, 2,
+          on_changed(&Mesh::positions, torus, larger)},
+         {"smaller-image", "Smaller texture coordinates", "times smaller than one image", 30, 2,
+          on_changed(&Mesh::texcoords, torus, smaller)},
+         {"larger-image", "Larger texture coordinates", "times larger than one image", 30, 2,
+          on_changed(&Mesh::texcoords, torus, larger)}});
 }
 
 PreparedExperiment tangents_by_offset(bool is_quick) {
-    const auto input = textured_torus(is_quick);
-    Sweeps sweeps(names_of(input->methods), broken_degrees);
-    sweeps.add("offset", "Meshes farther away", "distance along each axis, in radii", 8, 1,
-               [input](std::size_t method, double value) {
-                   return input->degrees(method, {.offset = value}, {});
-               });
-    sweeps.add("offset-image", "Texture coordinates farther away",
-               "distance along each axis, in images", 8, 1,
-               [input](std::size_t method, double value) {
-                   return input->degrees(method, {}, {.offset = value});
-               });
-    return tangents_experiment(
+    const auto torus = textured_torus(is_quick);
+    const auto moved = [](double value) { return Change{.offset = value}; };
+    return on_mesh(
         {.question = "At which distances of a mesh and its texture coordinates from the origin are "
                      "tangents accurate?",
          .ground_truth = textured_torus_ground_truth,
-         .input =
-             fmt::format("torus of {} triangles, its positions and its texture coordinates at "
-                         "9 distances each from 1 to 1e8; the errors are those of all together, "
-                         "the times those at the origin",
-                         input->ground_truth.mesh.triangles.size())},
-        input, std::move(sweeps));
+         .input = fmt::format("torus of {} triangles, its positions and its texture coordinates at "
+                              "9 distances each from 1 to 1e8",
+                              torus->ground_truth.mesh.triangles.size())},
+        "at the origin", torus,
+        {{"offset", "Meshes farther away", "distance along each axis, in radii", 8, 1,
+          on_changed(&Mesh::positions, torus, moved)},
+         {"offset-image", "Texture coordinates farther away", "distance along each axis, in images",
+          8, 1, on_changed(&Mesh::texcoords, torus, moved)}});
 }
 
 constexpr double swept_wavelength = 32.0;
-
-SlopesMethod by_kernel(Kernel kernel, Arithmetic arithmetic) {
-    const std::string name = name_of(kernel, 0);
-    return {fmt::format("{}, {}", name, enum_name(arithmetic)),
-            {{"kernel", name}, {"arithmetic", enum_name(arithmetic)}},
-            [=](const WaveMap& wave) {
-                BumpOptions options = wave.options;
-                options.kernel = kernel;
-                options.arithmetic = arithmetic;
-                Report report;
-                return normals_from_height(wave.heights, options, report);
-            }};
-}
-
-std::vector<SlopesMethod> swept_slope_methods() {
-    std::vector<SlopesMethod> methods;
-    for (const Kernel kernel : {Kernel::sobel3, Kernel::central7}) {
-        for (const Arithmetic arithmetic : {Arithmetic::float64, Arithmetic::float32})
-            methods.push_back(by_kernel(kernel, arithmetic));
-    }
-    methods.push_back({"plain sobel3",
-                       {{"kernel", "sobel3"}, {"arithmetic", "float32"}},
-                       [](const WaveMap& wave) {
-                           return textbook_sobel_normals(wave.heights,
-                                                         static_cast<float>(wave.options.strength));
-                       },
-                       true});
-    return methods;
-}
 
 int map_side(bool is_quick) {
     return (is_quick ? 64 : 192) + 2 * wave_margin;
 }
 
-std::vector<float> slope_degrees(const SlopesMethod& method, const WaveMap& wave) {
-    return inner_angles(method.compute(wave), wave.normals, wave_margin);
+/// Two kernels in both arithmetics and textbook code, on a wave.
+std::shared_ptr<const SweptSlopes> swept_wave(bool is_quick) {
+    SweptSlopes swept{oblique_wave(map_side(is_quick), swept_wavelength, 32), {}};
+    for (const Kernel kernel : {Kernel::sobel3, Kernel::central7}) {
+        for (const Arithmetic arithmetic : both_arithmetics) {
+            const std::string name = name_of(kernel, 0);
+            swept.methods.push_back(
+                {fmt::format("{}, {}", name, enum_name(arithmetic)),
+                 {{"kernel", name}, {"arithmetic", enum_name(arithmetic)}},
+                 [=](const WaveMap& wave) {
+                     return normals_by({kernel, 2, arithmetic}, wave.heights, wave.options);
+                 }});
+        }
+    }
+    swept.methods.push_back({"plain sobel3",
+                             {{"kernel", "sobel3"}, {"arithmetic", "float32"}},
+                             [](const WaveMap& wave) {
+                                 return textbook_sobel_normals(
+                                     wave.heights, static_cast<float>(wave.options.strength));
+                             },
+                             true});
+    return std::make_shared<const SweptSlopes>(std::move(swept));
 }
 
 /// The wave with its heights multiplied by `times`.
@@ -461,6 +401,10 @@ WaveMap steeper(WaveMap wave, double times) {
     return wave;
 }
 
+WaveMap flatter(WaveMap wave, double times) {
+    return steeper(std::move(wave), 1.0 / times);
+}
+
 /// The wave with `by` added to its heights in double, then rounded to float, as a file would.
 WaveMap higher(WaveMap wave, double by) {
     for (float& texel : wave.heights.as<float>())
@@ -468,54 +412,43 @@ WaveMap higher(WaveMap wave, double by) {
     return wave;
 }
 
-/// A wave and the methods that are swept on it.
-struct SlopesInput {
-    WaveMap wave;
-    std::vector<SlopesMethod> methods = swept_slope_methods();
-};
-
-std::shared_ptr<const SlopesInput> swept_wave(bool is_quick) {
-    return std::make_shared<const SlopesInput>(
-        SlopesInput{oblique_wave(map_side(is_quick), swept_wavelength, 32)});
+/// The errors of normals on a wave that is changed by the value of a sweep.
+auto on_changed_wave(const std::shared_ptr<const SweptSlopes>& swept,
+                     WaveMap (*changed)(WaveMap wave, double value)) {
+    return [swept, changed](std::size_t method, double value) {
+        const WaveMap wave = changed(swept->ground_truth, value);
+        return inner_angles(swept->methods[method].compute(wave), wave.normals, wave_margin);
+    };
 }
 
-PreparedExperiment slopes_experiment(Experiment report,
-                                     const std::shared_ptr<const SlopesInput>& input, Sweeps sweeps,
-                                     const std::string& advice = {}) {
+PreparedExperiment slopes_experiment(Experiment report, const std::string& unchanged,
+                                     const std::shared_ptr<const SweptSlopes>& swept,
+                                     std::vector<Sweep> sweeps, const std::string& advice = {}) {
+    const WaveMap& wave = swept->ground_truth;
     report.item = "texel";
-    report.items = static_cast<double>(input->wave.normals.size());
-    return swept_experiment(std::move(report), input->methods, std::move(sweeps),
-                            std::shared_ptr<const WaveMap>(input, &input->wave), advice);
+    report.items = static_cast<double>(wave.normals.size());
+    return swept_experiment(std::move(report), unchanged, swept->methods,
+                            std::shared_ptr<const WaveMap>(swept, &wave), std::move(sweeps),
+                            advice);
 }
 
 PreparedExperiment bump_by_steepness(bool is_quick) {
-    const auto input = swept_wave(is_quick);
-    Sweeps sweeps(names_of(input->methods), broken_degrees);
-    sweeps.add("steeper", "Steeper", "slope", 30, 2, [input](std::size_t method, double value) {
-        return slope_degrees(input->methods[method], steeper(input->wave, value));
-    });
-    sweeps.add("flatter", "Flatter", "1 / slope", 30, 2, [input](std::size_t method, double value) {
-        return slope_degrees(input->methods[method], steeper(input->wave, 1.0 / value));
-    });
+    const auto wave = swept_wave(is_quick);
     return slopes_experiment(
         {.question = "At which slopes of a height map are its normals accurate?",
          .ground_truth =
              "The slopes of the wave in closed form, multiplied by the same factor. Tests verify "
              "them by numerical differentiation.",
          .input = fmt::format("{0} x {0} texels of a wave {1} texels long, at 31 slopes from 1e-30 "
-                              "to 1e30; the errors are those of all together, the times those at "
-                              "slope 1",
+                              "to 1e30",
                               map_side(is_quick), swept_wavelength)},
-        input, std::move(sweeps));
+        "at slope 1", wave,
+        {{"steeper", "Steeper", "slope", 30, 2, on_changed_wave(wave, steeper)},
+         {"flatter", "Flatter", "1 / slope", 30, 2, on_changed_wave(wave, flatter)}});
 }
 
 PreparedExperiment bump_by_offset(bool is_quick) {
-    const auto input = swept_wave(is_quick);
-    Sweeps sweeps(names_of(input->methods), broken_degrees);
-    sweeps.add("offset", "Higher", "height above zero, texels", 8, 1,
-               [input](std::size_t method, double value) {
-                   return slope_degrees(input->methods[method], higher(input->wave, value));
-               });
+    const auto wave = swept_wave(is_quick);
     return slopes_experiment(
         {.question = "At which distances of the heights from zero are their normals accurate?",
          .ground_truth =
@@ -523,10 +456,10 @@ PreparedExperiment bump_by_offset(bool is_quick) {
              "Tests verify them by numerical differentiation.",
          .input =
              fmt::format("{0} x {0} texels of a wave {1} texels long and 10 high, slope 1, at 9 "
-                         "heights from 1 to 1e8; the errors are those of all together, the times "
-                         "those at 0",
+                         "heights from 1 to 1e8",
                          map_side(is_quick), swept_wavelength)},
-        input, std::move(sweeps),
+        "at 0", wave,
+        {{"offset", "Higher", "height above zero, texels", 8, 1, on_changed_wave(wave, higher)}},
         " The error of float64 is that of rounding these heights to float, which no method can "
         "undo: store heights relative to a zero within their range.");
 }

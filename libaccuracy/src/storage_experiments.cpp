@@ -39,35 +39,37 @@ glm::dvec3 normal_at(std::span<const float> samples, std::size_t texel) {
     return {samples[3 * texel], samples[3 * texel + 1], samples[3 * texel + 2]};
 }
 
-/// Encodes each texel: code(normal, pointer to `channels` samples).
-template <typename Sample, typename Code>
-Image coded(const Image& normals, int channels, Code code) {
-    Image codes =
-        make_image(normals.width, normals.height, channels, 8 * sizeof(Sample), ColorSpace::data);
-    const std::span<const float> from = normals.as<float>();
-    const std::span<Sample> to = codes.as<Sample>();
-    parallel_for(texels_of(normals), grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            code(normal_at(from, i), &to[i * static_cast<std::size_t>(channels)]);
-    });
-    return codes;
+void set_normal(std::span<float> samples, std::size_t texel, const glm::dvec3& normal) {
+    for (int axis = 0; axis < 3; ++axis)
+        samples[3 * texel + static_cast<std::size_t>(axis)] = static_cast<float>(normal[axis]);
 }
 
-/// Decodes each texel: direction(samples) returns a vector of any length.
-template <typename Sample, typename Direction>
-Image decoded(const Image& codes, Direction direction) {
-    Image normals = make_image(codes.width, codes.height, 3, 32, ColorSpace::data);
-    const std::span<const Sample> from = codes.as<Sample>();
-    const std::span<float> to = normals.as<float>();
-    const auto channels = static_cast<std::size_t>(codes.channels);
-    parallel_for(texels_of(codes), grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const glm::dvec3 unit = glm::normalize(direction(&from[i * channels]));
-            for (int axis = 0; axis < 3; ++axis)
-                to[3 * i + static_cast<std::size_t>(axis)] = static_cast<float>(unit[axis]);
-        }
-    });
-    return normals;
+/// Encodes and decodes each texel by codes of 16 bits.
+///
+/// \param encode  writes the codes of a normal, of `channels` channels
+/// \param decode  returns the direction of codes, of any length
+template <typename Encode, typename Decode>
+auto by_texels(int channels, Encode encode, Decode decode) {
+    return [=](const Image& normals) -> NormalDecoder {
+        Image codes = make_image(normals.width, normals.height, channels, 16, ColorSpace::data);
+        const auto stride = static_cast<std::size_t>(channels);
+        const std::span<const float> from = normals.as<float>();
+        const std::span<std::uint16_t> to = codes.as<std::uint16_t>();
+        parallel_for(texels_of(normals), grain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                encode(normal_at(from, i), &to[i * stride]);
+        });
+        return [decode, stride, codes = std::move(codes)] {
+            Image decoded = make_image(codes.width, codes.height, 3, 32, ColorSpace::data);
+            const std::span<const std::uint16_t> words = codes.as<std::uint16_t>();
+            const std::span<float> samples = decoded.as<float>();
+            parallel_for(texels_of(codes), grain, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i)
+                    set_normal(samples, i, glm::normalize(decode(&words[i * stride])));
+            });
+            return decoded;
+        };
+    };
 }
 
 /// \param zero  the code of zero in integer maps; "exact" for layouts that represent 0 exactly
@@ -146,37 +148,35 @@ NormalCode as_xy_map(const NormalMapFormat& format) {
 NormalCode as_ten_bits() {
     constexpr int largest = 511;
     NormalCode code = named("xyz", "10 bit", "nearest", 4.0);
-    code.encode = [](const Image& normals) -> NormalDecoder {
-        const auto encode = [](const glm::dvec3& n, std::uint16_t* to) {
+    code.encode = by_texels(
+        3,
+        [](const glm::dvec3& n, std::uint16_t* to) {
             for (int axis = 0; axis < 3; ++axis)
                 to[axis] =
                     static_cast<std::uint16_t>(rounded_to_int(n[axis] * largest) + largest + 1);
-        };
-        return [codes = coded<std::uint16_t>(normals, 3, encode)] {
-            return decoded<std::uint16_t>(codes, [](const std::uint16_t* from) {
-                return glm::dvec3(from[0], from[1], from[2]) - (largest + 1.0);
-            });
-        };
-    };
+        },
+        [](const std::uint16_t* from) {
+            return glm::dvec3(from[0], from[1], from[2]) - (largest + 1.0);
+        });
     return code;
 }
 
 /// (n + 1) / 2 rounded to half floats, as `relief-bake --half` writes.
 NormalCode as_halves() {
     NormalCode code = named("xyz", "half", "nearest", 6.0);
-    code.encode = [](const Image& normals) -> NormalDecoder {
-        const auto encode = [](const glm::dvec3& sample, std::uint16_t* to) {
+    const auto halves = by_texels(
+        3,
+        [](const glm::dvec3& sample, std::uint16_t* to) {
             for (int axis = 0; axis < 3; ++axis)
                 to[axis] = glm::packHalf1x16(static_cast<float>(sample[axis]));
-        };
-        const Image map = encode_normal_map(normals, {.bits = 32});
-        return [codes = coded<std::uint16_t>(map, 3, encode)] {
-            return decoded<std::uint16_t>(codes, [](const std::uint16_t* from) {
-                const glm::dvec3 sample(glm::unpackHalf1x16(from[0]), glm::unpackHalf1x16(from[1]),
-                                        glm::unpackHalf1x16(from[2]));
-                return 2.0 * sample - 1.0;
-            });
-        };
+        },
+        [](const std::uint16_t* from) {
+            const glm::dvec3 sample(glm::unpackHalf1x16(from[0]), glm::unpackHalf1x16(from[1]),
+                                    glm::unpackHalf1x16(from[2]));
+            return 2.0 * sample - 1.0;
+        });
+    code.encode = [halves](const Image& normals) {
+        return halves(encode_normal_map(normals, {.bits = 32}));
     };
     return code;
 }
@@ -195,18 +195,16 @@ NormalCode as_octahedral(int bits, bool best) {
     // Two codes occupy 16, 24 or 32 bits in existing formats.
     NormalCode code = named("octahedral", fmt::format("2 x {} bit", bits),
                             best ? "best" : "nearest", std::ceil(2.0 * bits / 8.0));
-    code.encode = [largest, best](const Image& normals) -> NormalDecoder {
-        const auto encode = [largest, best](const glm::dvec3& n, std::uint16_t* to) {
+    code.encode = by_texels(
+        2,
+        [largest, best](const glm::dvec3& n, std::uint16_t* to) {
             const OctahedralCode actual = octahedral_code(n, largest, best);
             to[0] = static_cast<std::uint16_t>(actual.x + largest);
             to[1] = static_cast<std::uint16_t>(actual.y + largest);
-        };
-        return [largest, codes = coded<std::uint16_t>(normals, 2, encode)] {
-            return decoded<std::uint16_t>(codes, [largest](const std::uint16_t* from) {
-                return octahedral_direction({from[0] - largest, from[1] - largest}, largest);
-            });
-        };
-    };
+        },
+        [largest](const std::uint16_t* from) {
+            return octahedral_direction({from[0] - largest, from[1] - largest}, largest);
+        });
     return code;
 }
 
@@ -283,73 +281,93 @@ ErrorStats patch_errors(const Image& normals, const Image& ground_truth, int blo
     const std::vector<glm::dvec3> expected = sums_of(ground_truth);
     std::vector<float> degrees;
     for (std::size_t i = 0; i < patches; ++i)
-        degrees.push_back(static_cast<float>(degrees_between(actual[i], expected[i])));
+        degrees.push_back(angle_of(actual[i], expected[i]));
     return error_stats(std::move(degrees));
 }
 
 namespace {
 
-using relief::accuracy::detail::described;
+/// Exact normals, and the same rounded to float as the texels of a map.
+struct ExactTexels {
+    std::vector<glm::dvec3> directions;
+    Image normals;
 
-Experiment described(std::size_t texels) {
-    return {.error_unit = "degrees", .item = "texel", .items = static_cast<double>(texels)};
+    ExactTexels(std::vector<glm::dvec3> exact, int side)
+        : directions(std::move(exact)), normals(image_of_normals(directions, side)) {}
+};
+
+/// An experiment whose methods store the normals of a map in codes.
+/// \param error  returns the error of the decoded normals of a code
+template <typename Error>
+PreparedExperiment code_experiment(Experiment report,
+                                   const std::shared_ptr<const ExactTexels>& input,
+                                   const std::vector<NormalCode>& codes, StorageWork work,
+                                   const Error& error) {
+    PreparedExperiment prepared;
+    prepared.report = std::move(report);
+    prepared.report.error_unit = "degrees";
+    prepared.report.item = "texel";
+    prepared.report.items = static_cast<double>(input->directions.size());
+    prepared.costs.memory = false;
+    for (const NormalCode& code : codes) {
+        // The error encodes the normals, and the work may decode them.
+        const auto decode = std::make_shared<NormalDecoder>();
+        Method& method = prepared.methods.emplace_back();
+        method.name = code.name;
+        method.choices = code.choices;
+        method.stored_bytes = code.bytes;
+        method.error = [input, code, decode, work, error] {
+            const NormalDecoder decoder = code.encode(input->normals);
+            if (work == StorageWork::decode) *decode = decoder;
+            return error(code, decoder());
+        };
+        if (work == StorageWork::decode)
+            method.work = [decode] { (*decode)(); };
+        else
+            method.work = [input, encode = code.encode] { encode(input->normals); };
+    }
+    return prepared;
 }
 
-constexpr std::array patch_sides = {1, 2, 4, 8, 16, 32};
+/// The errors of single normals.
+auto texel_errors_of(const std::shared_ptr<const ExactTexels>& input) {
+    return [input](const NormalCode&, const Image& stored) {
+        return map_errors(stored, input->directions);
+    };
+}
 
 Chart patches_chart(const Image& ground_truth, const std::vector<NormalCode>& codes) {
-    Chart chart;
-    chart.id = "patches";
-    chart.title = "The mean of larger patches";
-    chart.x_label = "side of a patch, texels";
-    chart.y_label = "RMS error of the mean normal, degrees";
-    for (const NormalCode& code : codes) {
-        const Image actual = code.stored(ground_truth);
-        std::vector<CurvePoint> points;
-        for (const int block : patch_sides)
-            points.push_back({static_cast<double>(block),
-                              curve_error(patch_errors(actual, ground_truth, block))});
-        chart.curves.push_back(fitted_curve(code.name, std::move(points), std::nullopt));
-    }
+    std::vector<Image> stored;
+    for (const NormalCode& code : codes)
+        stored.push_back(code.stored(ground_truth));
+    Chart chart = chart_over(
+        {.id = "patches",
+         .title = "The mean of larger patches",
+         .x_label = "side of a patch, texels",
+         .y_label = "RMS error of the mean normal, degrees"},
+        names_of(codes), {1, 2, 4, 8, 16, 32}, [](double side) { return static_cast<int>(side); },
+        [&](std::size_t i, int side) {
+            return curve_error(patch_errors(stored[i], ground_truth, side));
+        });
+    for (Curve& curve : chart.curves)
+        fit(curve, std::nullopt);
     return chart;
 }
 
 PreparedExperiment normal_reading_experiment(bool is_quick) {
-    struct Input {
-        std::vector<glm::dvec3> directions;
-        Image normals;
-    };
     const int side = is_quick ? 128 : 512;
     // The upper half, which a map in tangent space can represent.
     std::vector<glm::dvec3> directions =
         even_directions(2 * static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
     directions.resize(directions.size() / 2);
-    Image normals = image_of_normals(directions, side);
-    const auto input =
-        std::make_shared<const Input>(Input{std::move(directions), std::move(normals)});
-    PreparedExperiment prepared;
-    prepared.report = described(input->directions.size());
-    prepared.report.question = "What is the error of a stored normal, by layout and bits?";
-    prepared.report.ground_truth =
-        "The directions in double, which are unit by construction and evenly distributed.";
-    prepared.report.input =
-        fmt::format("{} directions spread evenly over the half sphere above a surface",
-                    input->directions.size());
-    prepared.costs.memory = false;
-    const std::vector<NormalCode> codes = normal_codes();
-    for (const NormalCode& code : codes) {
-        // The error encodes the normals, and the work decodes them.
-        const auto decode = std::make_shared<NormalDecoder>();
-        prepared.methods.push_back({.name = code.name,
-                                    .choices = code.choices,
-                                    .error =
-                                        [input, code, decode] {
-                                            *decode = code.encode(input->normals);
-                                            return map_errors((*decode)(), input->directions);
-                                        },
-                                    .work = [decode] { (*decode)(); },
-                                    .stored_bytes = code.bytes});
-    }
+    const auto input = std::make_shared<const ExactTexels>(std::move(directions), side);
+    PreparedExperiment prepared = code_experiment(
+        {.question = "What is the error of a stored normal, by layout and bits?",
+         .ground_truth =
+             "The directions in double, which are unit by construction and evenly distributed.",
+         .input = fmt::format("{} directions spread evenly over the half sphere above a surface",
+                              input->directions.size())},
+        input, normal_codes(), StorageWork::decode, texel_errors_of(input));
     prepared.compared = {"xyz 8 bit", "xyz 8 bit, zero at 128",
                          "xyz 8 bit, zero at 128, read as glTF does", "octahedral 2 x 8 bit, best",
                          "octahedral 2 x 16 bit, best"};
@@ -357,47 +375,25 @@ PreparedExperiment normal_reading_experiment(bool is_quick) {
 }
 
 PreparedExperiment normal_writing_experiment() {
-    struct Input {
-        std::vector<glm::dvec3> surface;
-        Image normals;
-    };
     constexpr int side = 256;  // The same size as in docs/normal-maps.md.
-    std::vector<glm::dvec3> surface = smooth_surface(side);
-    Image normals = image_of_normals(surface, side);
-    const auto input = std::make_shared<const Input>(Input{std::move(surface), std::move(normals)});
-    PreparedExperiment prepared;
-    prepared.report = described(input->surface.size());
-    prepared.report.question =
-        "How long does encoding a smooth surface take, and does dithering preserve the mean of a "
-        "patch?";
-    prepared.report.ground_truth =
-        "The normals of the surface in closed form, single and summed over patches. A test "
-        "verifies them by numerical differentiation of the heights.";
-    prepared.report.input =
-        fmt::format("{} x {} texels of waves of 128 texels and more", side, side);
-    prepared.costs.memory = false;
-    const std::vector<NormalCode> codes = normal_codes();
-    for (const NormalCode& code : codes) {
-        prepared.methods.push_back(
-            {.name = code.name,
-             .choices = code.choices,
-             .error = [input,
-                       code] { return map_errors(code.stored(input->normals), input->surface); },
-             .work = [input, encode = code.encode] { encode(input->normals); },
-             .stored_bytes = code.bytes});
-    }
+    const auto input = std::make_shared<const ExactTexels>(smooth_surface(side), side);
+    PreparedExperiment prepared = code_experiment(
+        {.question =
+             "How long does encoding a smooth surface take, and does dithering preserve the mean "
+             "of a patch?",
+         .ground_truth =
+             "The normals of the surface in closed form, single and summed over patches. A test "
+             "verifies them by numerical differentiation of the heights.",
+         .input = fmt::format("{} x {} texels of waves of 128 texels and more", side, side)},
+        input, normal_codes(), StorageWork::encode, texel_errors_of(input));
     prepared.compared = {"xyz 8 bit", "xyz 8 bit, blue-noise", "xyz 16 bit"};
-    prepared.finish = [input, codes](Experiment& report) {
-        report.charts = {patches_chart(input->normals, codes)};
+    prepared.finish = [input](Experiment& report) {
+        report.charts = {patches_chart(input->normals, normal_codes())};
     };
     return prepared;
 }
 
 const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
-
-float degrees_of(const glm::dvec3& actual, const glm::dvec3& expected) {
-    return static_cast<float>(degrees_between(actual, expected));
-}
 
 }  // namespace
 
@@ -453,15 +449,15 @@ FrameCodeErrors frame_errors(const SampleFrames& ground_truth, const Frames& act
     for (std::size_t i = 0; i < ground_truth.normals.size(); ++i) {
         const glm::dvec3 normal(actual.normals[i]);
         const glm::dvec3 tangent(actual.tangents[i]);
-        normals.push_back(degrees_of(normal, ground_truth.normals[i]));
-        tangents.push_back(degrees_of(tangent, ground_truth.tangents[i]));
+        normals.push_back(angle_of(normal, ground_truth.normals[i]));
+        tangents.push_back(angle_of(tangent, ground_truth.tangents[i]));
         errors.flipped_frames += actual.tangents[i].w == ground_truth.float_tangents[i].w ? 0U : 1U;
         const glm::dmat3 basis(tangent, glm::cross(normal, tangent), normal);
         const glm::dmat3 expected(ground_truth.tangents[i],
                                   glm::cross(ground_truth.normals[i], ground_truth.tangents[i]),
                                   ground_truth.normals[i]);
         for (const glm::dvec3& texel : tilted_texels)
-            texels.push_back(degrees_of(basis * texel, expected * texel));
+            texels.push_back(angle_of(basis * texel, expected * texel));
     }
     errors.normal = error_stats(normals);
     errors.tangent = error_stats(tangents);
@@ -472,7 +468,7 @@ FrameCodeErrors frame_errors(const SampleFrames& ground_truth, const Frames& act
 }
 
 std::vector<Method> frame_methods(const std::shared_ptr<const SampleFrames>& frames,
-                                  FrameWork work) {
+                                  StorageWork work) {
     std::vector<Method> methods;
     for (const FrameEncoding encoding : all_frame_encodings) {
         for (const FrameRounding rounding : {FrameRounding::nearest, FrameRounding::best}) {
@@ -495,7 +491,7 @@ std::vector<Method> frame_methods(const std::shared_ptr<const SampleFrames>& fra
                                        : fmt::format("The handedness of {} frames changed.",
                                                      errors.flipped_frames));
             };
-            if (work == FrameWork::encode)
+            if (work == StorageWork::encode)
                 method.work = [encode] { encode(); };
             else
                 method.work = [encoding, words = encode()] { decode_frames(words, encoding); };
@@ -507,10 +503,10 @@ std::vector<Method> frame_methods(const std::shared_ptr<const SampleFrames>& fra
 namespace {
 
 /// All encodings on evenly spread frames.
-PreparedExperiment frame_experiment(bool is_quick, FrameWork work) {
+PreparedExperiment frame_experiment(bool is_quick, StorageWork work) {
     const auto frames =
         std::make_shared<const SampleFrames>(even_frames(is_quick ? 20000 : 200000));
-    const bool is_decoding = work == FrameWork::decode;
+    const bool is_decoding = work == StorageWork::decode;
     PreparedExperiment prepared;
     prepared.report = {
         .question = is_decoding
@@ -577,21 +573,14 @@ std::vector<NormalCode> compressions() {
     return methods;
 }
 
-/// Waves with a slope of 0.35 (RMS), as exact normals and as the texels of a map.
-struct CompressedWaves {
-    std::vector<glm::dvec3> surface;
-    std::vector<glm::dvec3> corners;  ///< The normals half a texel to the right and down.
-    Image normals;
-
-    CompressedWaves(int side, double shortest) {
-        std::vector<HeightWave> waves = tiling_waves(side, side, 8, shortest, 0.35, 3);
-        surface = wave_heights(side, side, waves).normals;
-        normals = image_of_normals(surface, side);
-        for (HeightWave& wave : waves)
-            wave.phase += glm::dot(wave.frequency, glm::dvec2(0.5));
-        corners = wave_heights(side, side, waves).normals;
-    }
-};
+/// Waves with a slope of 0.35 (RMS).
+/// \param offset  of the texels from their centers, to the right and down
+std::vector<glm::dvec3> compressed_waves(int side, double shortest, double offset = 0.0) {
+    std::vector<HeightWave> waves = tiling_waves(side, side, 8, shortest, 0.35, 3);
+    for (HeightWave& wave : waves)
+        wave.phase += glm::dot(wave.frequency, glm::dvec2(offset));
+    return wave_heights(side, side, waves).normals;
+}
 
 /// The normals that bilinear filtering gives at the corners of texels: means of four texels of a
 /// map that tiles.
@@ -607,66 +596,49 @@ Image filtered_at_corners(const Image& normals, bool has_z) {
         for (const std::size_t texel : {i, row + right, next_row + i % width, next_row + right})
             mean += 0.25 * normal_at(normals.as<float>(), texel);
         if (!has_z) mean.z = std::sqrt(std::max(0.0, 1.0 - mean.x * mean.x - mean.y * mean.y));
-        const glm::dvec3 unit = glm::normalize(mean);
-        for (int axis = 0; axis < 3; ++axis)
-            result.as<float>()[3 * i + static_cast<std::size_t>(axis)] =
-                static_cast<float>(unit[axis]);
+        set_normal(result.as<float>(), i, glm::normalize(mean));
     }
     return result;
 }
 
 Chart wavelengths_chart(int side) {
-    Chart chart{.id = "wavelengths",
-                .title = "Shorter waves",
-                .x_label = "shortest wave, texels",
-                .y_label = "RMS error, degrees"};
-    const std::vector<NormalCode> methods = compressions();
-    for (const NormalCode& method : methods) {
-        if (!method.is_slow) chart.curves.push_back({.method = method.name});
-    }
-    for (const double shortest : {5.0, 10.0, 20.0, 40.0}) {
-        const CompressedWaves waves(side, shortest);
-        std::size_t curve = 0;
-        for (const NormalCode& method : methods) {
-            if (method.is_slow) continue;
-            const ErrorStats error = map_errors(method.stored(waves.normals), waves.surface);
-            chart.curves[curve++].points.push_back({shortest, curve_error(error)});
-        }
-    }
-    return chart;
+    std::vector<NormalCode> methods = compressions();
+    std::erase_if(methods, [](const NormalCode& method) { return method.is_slow; });
+    return chart_over(
+        {.id = "wavelengths",
+         .title = "Shorter waves",
+         .x_label = "shortest wave, texels",
+         .y_label = "RMS error, degrees"},
+        names_of(methods), {5.0, 10.0, 20.0, 40.0},
+        [&](double shortest) { return ExactTexels(compressed_waves(side, shortest), side); },
+        [&](std::size_t i, const ExactTexels& waves) {
+            return curve_error(map_errors(methods[i].stored(waves.normals), waves.directions));
+        });
 }
 
 PreparedExperiment compression_experiment(bool is_quick, bool is_filtered) {
     const int side = is_quick ? 128 : 512;
-    const auto waves = std::make_shared<const CompressedWaves>(side, 20.0);
-    PreparedExperiment prepared;
-    prepared.report = described(waves->surface.size());
-    prepared.report.question =
-        is_filtered ? "What is the error of compressed maps after bilinear filtering?"
-                    : "What do block formats cost in accuracy, and how long does encoding take?";
-    prepared.report.ground_truth = fmt::format(
-        "The normals of the surface in closed form{}. A test verifies them by numerical "
-        "differentiation of the heights.",
-        is_filtered ? " at the corners of texels" : "");
-    prepared.report.input = fmt::format(
-        "{} x {} texels of 8 waves of 20 texels and more, slope 0.35 (RMS)", side, side);
-    prepared.costs.memory = false;
+    const auto waves = std::make_shared<const ExactTexels>(compressed_waves(side, 20.0), side);
     std::vector<NormalCode> methods = compressions();
     // A GPU filters codes, and means of octahedral codes across a fold are not normals.
     if (is_filtered) methods.pop_back();
-    for (const NormalCode& method : methods) {
-        prepared.methods.push_back(
-            {.name = method.name,
-             .choices = method.choices,
-             .error =
-                 [waves, method, is_filtered] {
-                     const Image stored = method.stored(waves->normals);
-                     if (!is_filtered) return map_errors(stored, waves->surface);
-                     return map_errors(filtered_at_corners(stored, method.has_z), waves->corners);
-                 },
-             .work = [waves, encode = method.encode] { encode(waves->normals); },
-             .stored_bytes = method.bytes});
-    }
+    PreparedExperiment prepared = code_experiment(
+        {.question =
+             is_filtered
+                 ? "What is the error of compressed maps after bilinear filtering?"
+                 : "What do block formats cost in accuracy, and how long does encoding take?",
+         .ground_truth = fmt::format(
+             "The normals of the surface in closed form{}. A test verifies them by numerical "
+             "differentiation of the heights.",
+             is_filtered ? " at the corners of texels" : ""),
+         .input = fmt::format("{} x {} texels of 8 waves of 20 texels and more, slope 0.35 (RMS)",
+                              side, side)},
+        waves, methods, StorageWork::encode,
+        [=, corners = compressed_waves(side, 20.0, 0.5)](const NormalCode& code,
+                                                         const Image& stored) {
+            return is_filtered ? map_errors(filtered_at_corners(stored, code.has_z), corners)
+                               : map_errors(stored, waves->directions);
+        });
     prepared.compared = {"bc5, fast", "bc5, best", "bc7, fast", "bc7, best", "xyz 8 bit"};
     prepared.finish = [side, is_filtered](Experiment& report) {
         if (!is_filtered) report.charts = {wavelengths_chart(std::min(side, 256))};
@@ -677,10 +649,11 @@ PreparedExperiment compression_experiment(bool is_quick, bool is_filtered) {
 }  // namespace
 
 std::vector<PlannedExperiment> compression_plan(const PlanOptions& options) {
+    const bool is_quick = options.is_quick;
     return {{"compression/waves", Subject::compression, "Normal maps in block formats",
-             [is_quick = options.is_quick] { return compression_experiment(is_quick, false); }},
+             [is_quick] { return compression_experiment(is_quick, false); }},
             {"compression/filtered", Subject::compression, "Compression, filtered between texels",
-             [is_quick = options.is_quick] { return compression_experiment(is_quick, true); }}};
+             [is_quick] { return compression_experiment(is_quick, true); }}};
 }
 
 std::vector<PlannedExperiment> storage_plan(const PlanOptions& options) {
@@ -690,9 +663,9 @@ std::vector<PlannedExperiment> storage_plan(const PlanOptions& options) {
             {"storage/smooth-surface", Subject::storage, "A smooth surface in few bits, written",
              normal_writing_experiment},
             {"storage/frames", Subject::storage, "Tangent frames in few bits",
-             [is_quick] { return frame_experiment(is_quick, FrameWork::decode); }},
+             [is_quick] { return frame_experiment(is_quick, StorageWork::decode); }},
             {"storage/frames-written", Subject::storage, "Tangent frames in few bits, written",
-             [is_quick] { return frame_experiment(is_quick, FrameWork::encode); }}};
+             [is_quick] { return frame_experiment(is_quick, StorageWork::encode); }}};
 }
 
 }  // namespace relief::accuracy::detail

@@ -20,6 +20,9 @@
 
 namespace relief::accuracy::detail {
 
+/// The work that is timed.
+enum class StorageWork { encode, decode };
+
 /// Decodes the normals that were encoded: three float channels.
 using NormalDecoder = std::function<Image()>;
 
@@ -89,11 +92,8 @@ FrameCodeErrors frame_code_errors(const SampleFrames& ground_truth, FrameEncodin
 /// The errors of decoded frames.
 FrameCodeErrors frame_errors(const SampleFrames& ground_truth, const Frames& actual);
 
-/// The work of frame_methods().
-enum class FrameWork { encode, decode };
-
 /// Every encoding with both rounding modes. The choices are the encoding and the rounding.
 std::vector<Method> frame_methods(const std::shared_ptr<const SampleFrames>& frames,
-                                  FrameWork work);
+                                  StorageWork work);
 
 }  // namespace relief::accuracy::detail

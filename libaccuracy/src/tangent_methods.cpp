@@ -65,15 +65,14 @@ std::vector<Sample> samples_of(const TexturedMesh& ground_truth) {
     return samples;
 }
 
-glm::dmat3 basis_at(const Mesh& mesh, const CornerTangents& tangents, ShaderBasis basis,
-                    const Sample& sample) {
+glm::dmat3 basis_at(const Mesh& mesh, const TangentFrames& frames, const Sample& sample) {
     const glm::uvec3& corners = mesh.triangles[sample.triangle];
     glm::dvec3 normal = interpolated(mesh.normals, corners, sample.barycentric);
-    if (basis == ShaderBasis::derived) return derived_basis(mesh, corners, normal);
+    if (frames.basis == ShaderBasis::derived) return derived_basis(mesh, corners, normal);
     const glm::uvec3 first = glm::uvec3(0, 1, 2) + 3 * sample.triangle;
-    const glm::dvec4 stored = interpolated(tangents, first, sample.barycentric);
+    const glm::dvec4 stored = interpolated(frames.tangents, first, sample.barycentric);
     glm::dvec3 tangent(stored);
-    if (basis == ShaderBasis::made_unit) {
+    if (frames.basis == ShaderBasis::made_unit) {
         normal = glm::normalize(normal);
         tangent = glm::normalize(tangent);
     }
@@ -106,95 +105,94 @@ namespace {
 
 using TangentFunction = decltype(&mikktspace_tangents);
 
-TangentFrameMethod stored(const char* name, TangentFunction function) {
-    return {name, [function](const Mesh& mesh) {
-                Report report;
-                return function(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles,
-                                report);
-            }};
+FrameMethod stored(const char* name, TangentFunction function) {
+    return {.name = name,
+            .choices = {{"frames", name}, {"shader", "as interpolated"}},
+            .compute =
+                [function](const Mesh& mesh) {
+                    Report report;
+                    return TangentFrames{function(mesh.positions, mesh.normals, mesh.texcoords,
+                                                  mesh.triangles, report)};
+                },
+            .stored_bytes = 28.0};  // Normal, tangent and w as floats.
 }
-
-/// Collects angles between directions.
-class Angles {
-  public:
-    void add(const glm::dvec3& actual, const glm::dvec3& expected) {
-        degrees_.push_back(static_cast<float>(degrees_between(actual, expected)));
-    }
-    [[nodiscard]] ErrorStats distribution() && { return error_stats(std::move(degrees_)); }
-
-  private:
-    std::vector<float> degrees_;
-};
 
 }  // namespace
 
-CornerTangents TangentFrameMethod::tangents_of(const Mesh& mesh) const {
-    return tangents ? tangents(mesh) : CornerTangents{};
-}
-
-std::vector<TangentFrameMethod> tangent_methods() {
+std::vector<FrameMethod> tangent_methods() {
     return {stored("mikktspace", mikktspace_tangents),
             stored("area-weighted", area_weighted_tangents),
             stored("lengyel", lengyel_tangents),
-            {"screen-space", {}, ShaderBasis::derived}};
+            {.name = "screen-space",
+             .choices = {{"frames", "screen-space"}, {"shader", "derived"}},
+             .compute =
+                 [](const Mesh&) {
+                     return TangentFrames{{}, ShaderBasis::derived};
+                 },
+             .has_work = false,
+             .stored_bytes = 12.0,  // The normal.
+             .note = "No work for the mesh: shaders derive the frame of each pixel. tangents/drawn "
+                     "measures the time of that."}};
 }
 
-TangentFrameMethod made_unit(TangentFrameMethod method) {
-    method.name += ", made unit";
-    method.basis = ShaderBasis::made_unit;
-    return method;
+FrameMethod made_unit(const FrameMethod& method) {
+    FrameMethod unit = method;
+    unit.name += ", made unit";
+    unit.choices.back().second = "made unit";
+    unit.compute = [compute = method.compute](const Mesh& mesh) {
+        return TangentFrames{compute(mesh).tangents, ShaderBasis::made_unit};
+    };
+    return unit;
 }
 
-ErrorStats texel_errors(const TexturedMesh& ground_truth, const CornerTangents& tangents,
-                        ShaderBasis basis) {
-    Angles angles;
+ErrorStats texel_errors(const TexturedMesh& ground_truth, const TangentFrames& frames) {
+    std::vector<float> degrees;
     for (const Sample& sample : samples_of(ground_truth)) {
-        const glm::dmat3 actual = basis_at(ground_truth.mesh, tangents, basis, sample);
+        const glm::dmat3 actual = basis_at(ground_truth.mesh, frames, sample);
         const glm::dmat3 expected = exact_basis_at(ground_truth, sample);
         for (const glm::dvec3& texel : tilted_texels)
-            angles.add(actual * texel, expected * texel);
+            degrees.push_back(angle_of(actual * texel, expected * texel));
     }
-    return std::move(angles).distribution();
+    return error_stats(std::move(degrees));
 }
 
-ErrorStats inner_tangent_errors(const TexturedMesh& ground_truth, const CornerTangents& tangents,
-                                ShaderBasis basis) {
-    Angles angles;
+ErrorStats inner_tangent_errors(const TexturedMesh& ground_truth, const TangentFrames& frames) {
+    std::vector<float> degrees;
     for (const Sample& sample : samples_of(ground_truth)) {
-        angles.add(basis_at(ground_truth.mesh, tangents, basis, sample)[0],
-                   exact_basis_at(ground_truth, sample)[0]);
+        degrees.push_back(angle_of(basis_at(ground_truth.mesh, frames, sample)[0],
+                                   exact_basis_at(ground_truth, sample)[0]));
     }
-    return std::move(angles).distribution();
+    return error_stats(std::move(degrees));
 }
 
-ErrorStats corner_tangent_errors(const TexturedMesh& ground_truth, const CornerTangents& tangents) {
+std::vector<float> corner_tangent_angles(const TexturedMesh& ground_truth,
+                                         const CornerTangents& tangents) {
     const CornerTangents expected = exact_tangents(ground_truth);
-    Angles angles;
+    std::vector<float> degrees;
     for (std::size_t corner = 0; corner < tangents.size(); ++corner) {
         const std::uint32_t vertex =
             ground_truth.mesh.triangles[corner / 3][static_cast<int>(corner % 3)];
         if (ground_truth.inner[vertex] == 0) continue;
-        angles.add(glm::dvec3(tangents[corner]), glm::dvec3(expected[corner]));
+        degrees.push_back(angle_of(glm::dvec3(tangents[corner]), glm::dvec3(expected[corner])));
     }
-    return std::move(angles).distribution();
+    return degrees;
 }
 
-ErrorStats mismatch_errors(const TexturedMesh& ground_truth, const TangentFrameMethod& baker,
-                           const TangentFrameMethod& reader) {
-    const CornerTangents baked = baker.tangents_of(ground_truth.mesh);
-    const CornerTangents read = reader.tangents_of(ground_truth.mesh);
-    Angles angles;
+ErrorStats mismatch_errors(const TexturedMesh& ground_truth, const FrameMethod& baker,
+                           const FrameMethod& reader) {
+    const TangentFrames baked = baker.compute(ground_truth.mesh);
+    const TangentFrames read = reader.compute(ground_truth.mesh);
+    std::vector<float> degrees;
     for (const Sample& sample : samples_of(ground_truth)) {
         const glm::dmat3 expected = exact_basis_at(ground_truth, sample);
-        const glm::dmat3 to_texel =
-            glm::inverse(basis_at(ground_truth.mesh, baked, baker.basis, sample));
-        const glm::dmat3 from_texel = basis_at(ground_truth.mesh, read, reader.basis, sample);
+        const glm::dmat3 to_texel = glm::inverse(basis_at(ground_truth.mesh, baked, sample));
+        const glm::dmat3 from_texel = basis_at(ground_truth.mesh, read, sample);
         for (const glm::dvec3& tilt : tilted_texels) {
             const glm::dvec3 normal = expected * tilt;
-            angles.add(from_texel * glm::normalize(to_texel * normal), normal);
+            degrees.push_back(angle_of(from_texel * glm::normalize(to_texel * normal), normal));
         }
     }
-    return std::move(angles).distribution();
+    return error_stats(std::move(degrees));
 }
 
 namespace {

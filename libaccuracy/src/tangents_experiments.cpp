@@ -22,7 +22,7 @@ constexpr std::array rendered_slices = {24, 96, 384};
 constexpr int middle_slices = 96;
 
 struct FrameChoice {
-    const char* frames;
+    const char* name;
     TangentFrame frame;
     double stored_bytes;  ///< Per vertex: normal, tangent and w as floats, or only the normal.
 };
@@ -63,8 +63,8 @@ std::vector<RenderedMethod> frame_methods() {
     std::vector<RenderedMethod> all;
     for (const FrameChoice& choice : frame_choices) {
         for (const int around : rendered_slices) {
-            all.push_back({name_on_torus(choice.frames, around),
-                           {{"frames", choice.frames},
+            all.push_back({name_on_torus(choice.name, around),
+                           {{"frames", choice.name},
                             {"triangles", fmt::format("{}", torus_triangles(around))}},
                            bumpy_torus(around, choice.frame),
                            1,
@@ -104,10 +104,7 @@ PreparedExperiment rendered_frames_experiment(const PlanOptions& options) {
         device, std::move(experiment), frame_methods(),
         supersampled_reference(bumpy_torus(smooth_torus_slices, TangentFrame::stored), size, 1),
         [](Experiment& report, const Renderings& renderings) {
-            std::vector<std::string> names;
-            for (const FrameChoice& choice : frame_choices)
-                names.emplace_back(choice.frames);
-            report.charts = {torus_chart(report, names, rendered_slices)};
+            report.charts = {torus_chart(report, names_of(frame_choices), rendered_slices)};
             for (std::size_t i = 0; i < renderings.methods.size(); i += rendered_slices.size())
                 add_images("A normal map on few triangles", renderings, i, 0.5, report);
         },
@@ -120,115 +117,63 @@ constexpr const char* ground_truth_text =
     "differentiation of the surface.";
 
 /// All methods; the first one also with a shader that normalizes its vectors.
-std::vector<TangentFrameMethod> compared_tangent_methods() {
-    std::vector<TangentFrameMethod> methods = tangent_methods();
+std::vector<FrameMethod> compared_tangent_methods() {
+    std::vector<FrameMethod> methods = tangent_methods();
     methods.insert(methods.begin() + 1, made_unit(methods.front()));
     return methods;
 }
 
-Choices choices_of(const TangentFrameMethod& method) {
-    const std::string frames = method.name.substr(0, method.name.find(','));
-    switch (method.basis) {
-        case ShaderBasis::made_unit:
-            return {{"frames", frames}, {"shader", "made unit"}};
-        case ShaderBasis::derived:
-            return {{"frames", frames}, {"shader", "derived"}};
-        default:
-            return {{"frames", frames}, {"shader", "as interpolated"}};
-    }
-}
-
-/// Normal, tangent and w as floats; without a tangent only the normal.
-double stored_bytes_of(const TangentFrameMethod& method) {
-    return method.tangents ? 28.0 : 12.0;
-}
-
+/// The exact frames of the surface at its vertices.
 Method exact_frames(const std::shared_ptr<const TexturedMesh>& ground_truth) {
-    return {.name = "surface's own",
-            .choices = {{"frames", "surface's own"}, {"shader", "as interpolated"}},
-            .error =
-                [ground_truth] {
-                    return texel_errors(*ground_truth, exact_tangents(*ground_truth),
-                                        ShaderBasis::as_interpolated);
-                },
-            .stored_bytes = 28.0,
-            .note =
-                "Not a method: the exact frames at the vertices. The error that remains is "
-                "that of interpolation."};
-}
-
-std::vector<Method> methods_on(const std::shared_ptr<const TexturedMesh>& ground_truth) {
-    std::vector<Method> all = {exact_frames(ground_truth)};
-    for (const TangentFrameMethod& method : compared_tangent_methods()) {
-        Method& one = all.emplace_back();
-        one.name = method.name;
-        one.choices = choices_of(method);
-        one.error = [ground_truth, method] {
-            return texel_errors(*ground_truth, method.tangents_of(ground_truth->mesh),
-                                method.basis);
-        };
-        one.stored_bytes = stored_bytes_of(method);
-        if (method.tangents) {
-            one.work = [ground_truth, tangents = method.tangents] { tangents(ground_truth->mesh); };
-        } else {
-            one.note =
-                "No work for the mesh: shaders derive the frame of each pixel. tangents/drawn "
-                "measures the time of that.";
-        }
-    }
-    return all;
+    return {
+        .name = "surface's own",
+        .choices = {{"frames", "surface's own"}, {"shader", "as interpolated"}},
+        .error =
+            [ground_truth] { return texel_errors(*ground_truth, {exact_tangents(*ground_truth)}); },
+        .stored_bytes = 28.0,
+        .note =
+            "Not a method: the exact frames at the vertices. The error that remains is "
+            "that of interpolation."};
 }
 
 /// The expected exponent of the error over the number of cells. The error of a single triangle is
 /// of first order. If the errors of opposite triangles cancel, the RMS is of second order.
 /// Anisotropic cells have no expectation: the second-order error of the interpolation dominates at
 /// these sizes.
-std::optional<double> expected_order(const TexturedCase& one, const TangentFrameMethod& method) {
+std::optional<double> expected_order(const TexturedCase& one, const FrameMethod& method) {
     if (one.triangulation == Triangulation::anisotropic) return std::nullopt;
-    return one.triangulation == Triangulation::regular && method.tangents ? -2.0 : -1.0;
+    return one.triangulation == Triangulation::regular && method.has_work ? -2.0 : -1.0;
 }
 
-/// A chart with the errors of all methods over a varying mesh.
-Chart chart_over(const std::vector<std::pair<double, TexturedMesh>>& meshes) {
-    Chart chart;
+/// The errors of all methods over a varying mesh.
+Chart mesh_chart(Chart chart, const std::vector<double>& all_x,
+                 const std::function<TexturedMesh(double x)>& mesh_at) {
+    const std::vector<FrameMethod> methods = compared_tangent_methods();
     chart.y_label = "RMS error, degrees";
-    for (const TangentFrameMethod& method : compared_tangent_methods()) {
-        Curve& curve = chart.curves.emplace_back();
-        curve.method = method.name;
-        for (const auto& [x, ground_truth] : meshes) {
-            const CornerTangents tangents = method.tangents_of(ground_truth.mesh);
-            curve.points.push_back(
-                {x, curve_error(texel_errors(ground_truth, tangents, method.basis))});
-        }
-    }
-    return chart;
+    return chart_over(
+        std::move(chart), names_of(methods), all_x, mesh_at,
+        [&](std::size_t i, const TexturedMesh& ground_truth) {
+            return curve_error(texel_errors(ground_truth, methods[i].compute(ground_truth.mesh)));
+        });
 }
 
 Chart cells_chart(const TexturedCase& one, bool is_quick) {
-    std::vector<std::pair<double, TexturedMesh>> meshes;
-    for (const int cells : is_quick ? std::vector{16, 32, 64} : std::vector{16, 32, 64, 128})
-        meshes.emplace_back(cells, one.mesh(cells));
-    Chart chart = chart_over(meshes);
-    chart.id = "cells";
-    chart.title = "Finer cells";
-    chart.x_label = "cells along each parameter";
-    const std::vector<TangentFrameMethod> methods = compared_tangent_methods();
-    for (std::size_t m = 0; m < methods.size(); ++m) {
-        Curve& curve = chart.curves[m];
-        curve = fitted_curve(curve.method, curve.points, expected_order(one, methods[m]));
-    }
+    std::vector<double> sizes = {16, 32, 64};
+    if (!is_quick) sizes.push_back(128);
+    Chart chart =
+        mesh_chart({.id = "cells", .title = "Finer cells", .x_label = "cells along each parameter"},
+                   sizes, [&](double cells) { return one.mesh(static_cast<int>(cells)); });
+    const std::vector<FrameMethod> methods = compared_tangent_methods();
+    for (std::size_t m = 0; m < methods.size(); ++m)
+        fit(chart.curves[m], expected_order(one, methods[m]));
     return chart;
 }
 
 Chart bevels_chart() {
-    std::vector<std::pair<double, TexturedMesh>> meshes;
-    for (const double width : {0.01, 0.02, 0.05, 0.1, 0.2, 0.5})
-        meshes.emplace_back(width, beveled_plate(width));
-    Chart chart = chart_over(meshes);
-    chart.id = "bevels";
-    chart.title = "Wider bevels";
-    chart.x_label = "width of the bevels (half the width of the plate is 1)";
-    return chart;
+    return mesh_chart({.id = "bevels",
+                       .title = "Wider bevels",
+                       .x_label = "width of the bevels (half the width of the plate is 1)"},
+                      {0.01, 0.02, 0.05, 0.1, 0.2, 0.5}, beveled_plate);
 }
 
 using relief::accuracy::detail::described;
@@ -247,9 +192,13 @@ PreparedExperiment on_mesh(TexturedMesh mesh, const std::string& input) {
     prepared.report.ground_truth = ground_truth_text;
     prepared.report.input =
         fmt::format("{}: {} triangles", input, ground_truth->mesh.triangles.size());
-    prepared.methods = methods_on(ground_truth);
-    for (const TangentFrameMethod& method : tangent_methods())
-        prepared.compared.push_back(method.name);
+    prepared.methods =
+        methods_on(std::shared_ptr<const Mesh>(ground_truth, &ground_truth->mesh),
+                   compared_tangent_methods(), [ground_truth](const FrameMethod& method) {
+                       return texel_errors(*ground_truth, method.compute(ground_truth->mesh));
+                   });
+    prepared.methods.insert(prepared.methods.begin(), exact_frames(ground_truth));
+    prepared.compared = names_of(tangent_methods());
     return prepared;
 }
 
@@ -292,8 +241,8 @@ PreparedExperiment mismatches(bool is_quick) {
     prepared.report.input =
         fmt::format("normals tilted by 30 degrees on a jittered torus of {} triangles",
                     ground_truth->mesh.triangles.size());
-    for (const TangentFrameMethod& baker : compared_tangent_methods()) {
-        for (const TangentFrameMethod& reader : compared_tangent_methods()) {
+    for (const FrameMethod& baker : compared_tangent_methods()) {
+        for (const FrameMethod& reader : compared_tangent_methods()) {
             prepared.methods.push_back(
                 {.name = fmt::format("baked in {}, read in {}", baker.name, reader.name),
                  .choices = {{"baked in", baker.name}, {"read in", reader.name}},

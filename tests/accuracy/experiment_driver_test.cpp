@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The driver of experiments: measured methods, filters, passes and subjects.
+// The driver of experiments: measured methods, memory, filters, passes and subjects.
 #include "experiment_driver.h"
 
 #include <fmt/format.h>
@@ -180,13 +180,6 @@ TEST(Finding, LeavesOutMethodsWithUndefinedResults) {
     EXPECT_EQ(finding_of(experiment, {}).find("No method has a defined error everywhere."), 0U);
 }
 
-TEST(FittedCurve, HasTheSlopeOfItsPoints) {
-    const Curve curve = fitted_curve("m", {{1.0, 8.0}, {2.0, 2.0}, {4.0, 0.5}}, -2.0);
-    EXPECT_NEAR(curve.order.value(), -2.0, 1e-12);
-    EXPECT_EQ(curve.expected_order, -2.0);
-    EXPECT_EQ(curve.points.size(), 3U);
-}
-
 /// An experiment whose rounds have the times that `seconds` returns.
 PlannedExperiment planned(const std::string& id, std::size_t methods,
                           const std::function<double()>& seconds) {
@@ -283,18 +276,6 @@ TEST(Passes, DivideTheRounds) {
     EXPECT_THAT(rounds_of(found[1], 0), ElementsAre(7, 8, 9, 14, 15, 20, 21));
 }
 
-TEST(Passes, ABusyMomentIsInOneOfThem) {
-    // All of pass 1 is twice as slow; the medians stay those of the other passes.
-    std::size_t pass = 0;
-    RunOptions options = rounds(9);
-    options.passes = 3;
-    options.tell = [&](const RunProgress& progress) { pass = progress.pass; };
-    const std::vector<Experiment> found =
-        run_planned({planned("two", 2, [&] { return pass == 1 ? 2.0 : 1.0; })}, options);
-    EXPECT_EQ(found[0].measurements[0].cost.one_thread->spread().median, 1.0);
-    EXPECT_EQ(found[0].measurements[0].cost.one_thread->spread().p90, 2.0);
-}
-
 TEST(Passes, AreAtMostTheNumberOfRounds) {
     std::size_t runs = 0;
     RunOptions options = rounds(3);
@@ -339,6 +320,27 @@ TEST(SharedInput, IsMadeOnceByTheFirstThatNeedsIt) {
     EXPECT_EQ(*copy.get(), 1);
     EXPECT_EQ(shared.get(), copy.get());
     EXPECT_EQ(made, 1);
+}
+
+TEST(PeakBytes, AreTheMaximumAllocated) {
+    constexpr std::size_t size = 64U << 20U;
+    const auto touch = [] {
+        std::vector<char> memory(size);
+        for (std::size_t i = 0; i < size; i += 512)
+            memory[i] = static_cast<char>(i);
+        volatile const char* kept = memory.data();
+        EXPECT_EQ(kept[512], static_cast<char>(512));
+    };
+#ifdef __SANITIZE_THREAD__
+    GTEST_SKIP() << "the process also holds the memory of ThreadSanitizer";
+#endif
+    const std::optional<std::uint64_t> one = peak_bytes_of(touch);
+    if (!one) GTEST_SKIP() << "this system does not tell what a process holds";
+    EXPECT_GE(*one, size * 9 / 10);
+    EXPECT_LE(peak_bytes_of([] {}).value(), size / 10);
+#ifndef __SANITIZE_ADDRESS__  // AddressSanitizer keeps freed memory.
+    EXPECT_LE(peak_bytes_of([&] { touch(), touch(); }).value(), size * 11 / 10);
+#endif
 }
 
 TEST(Subjects, HaveTheExperimentsOfTheirName) {

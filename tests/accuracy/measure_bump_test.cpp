@@ -64,15 +64,6 @@ TEST(BumpFields, TheirNormalsAreThoseOfDifferencesOfHighOrder) {
     EXPECT_LT(share_beyond(2e-3, make_bump_field(recipe_of(FieldShape::terraces), 160, 160)), 0.5);
 }
 
-TEST(BumpFields, CustomFieldHasTheSlopeOfItsFormula) {
-    const AnalyticHeights field = sampled_heights(5, 4, [](const glm::dvec2& p) {
-        return HeightSample{p.x * p.x * 0.25 - 2.0 * p.y, {0.5 * p.x, -2.0}};
-    });
-    EXPECT_EQ(field.heights.as<float>()[1 * 5 + 4], 2.0F);
-    EXPECT_LT(glm::length(field.normals[1 * 5 + 4] - glm::normalize(glm::dvec3(-2.0, -2.0, 1.0))),
-              1e-15);
-}
-
 TEST(BumpFields, TerracesHaveNoNormalNextToWalls) {
     const BumpField field = make_bump_field(recipe_of(FieldShape::terraces), 160, 160);
     const std::span<const float> heights = field.heights.as<float>();
@@ -187,23 +178,6 @@ WaveError error_on(Kernel kernel, double wavelength) {
             std::sqrt((squares(all) - squares(but_border)) / of_border)};
 }
 
-/// Returns the negative slope of the best line through log error over log wavelength.
-double fitted_order(const std::vector<double>& wavelengths, const std::vector<double>& errors) {
-    double x = 0.0;
-    double y = 0.0;
-    for (std::size_t i = 0; i < errors.size(); ++i) {
-        x += std::log(wavelengths[i]) / static_cast<double>(errors.size());
-        y += std::log(errors[i]) / static_cast<double>(errors.size());
-    }
-    double products = 0.0;
-    double squares = 0.0;
-    for (std::size_t i = 0; i < errors.size(); ++i) {
-        products += (std::log(wavelengths[i]) - x) * (std::log(errors[i]) - y);
-        squares += (std::log(wavelengths[i]) - x) * (std::log(wavelengths[i]) - x);
-    }
-    return -products / squares;
-}
-
 TEST(BumpConvergence, EveryKernelHasItsOrderInsideAndFirstOrderAtAClampedBorder) {
     for (const Kernel kernel :
          {Kernel::forward, Kernel::central3, Kernel::prewitt3, Kernel::sobel3, Kernel::scharr3,
@@ -215,18 +189,17 @@ TEST(BumpConvergence, EveryKernelHasItsOrderInsideAndFirstOrderAtAClampedBorder)
             order == 6   ? std::vector{9.0, 11.0, 13.0, 16.0, 19.0}
             : order == 4 ? std::vector{11.0, 14.0, 18.0, 23.0, 29.0}
                          : std::vector{20.0, 25.0, 31.0, 39.0, 48.0};
-        std::vector<double> inside;
-        std::vector<double> border;
+        std::vector<CurvePoint> inside;
+        std::vector<CurvePoint> border;
         for (const double wavelength : wavelengths) {
             const WaveError error = error_on(kernel, wavelength);
-            inside.push_back(error.inside);
-            border.push_back(error.border);
+            inside.push_back({wavelength, error.inside});
+            border.push_back({wavelength, error.border});
         }
-        EXPECT_NEAR(fitted_order(wavelengths, inside), order, 0.15 * order)
-            << static_cast<int>(kernel);
+        EXPECT_NEAR(fitted_order(inside).value(), -order, 0.15 * order) << static_cast<int>(kernel);
         // The heights beyond the border are a reflection, whose curvature differs from that of the
         // wave.
-        EXPECT_NEAR(fitted_order(wavelengths, border), 1.0, 0.35) << static_cast<int>(kernel);
+        EXPECT_NEAR(fitted_order(border).value(), -1.0, 0.35) << static_cast<int>(kernel);
     }
 }
 
@@ -286,7 +259,7 @@ TEST(BumpExperiment, ReferenceOfAMapIsTheMostAccurateMethod) {
     ASSERT_TRUE(experiment.reference.method);
     EXPECT_TRUE(experiment.reference.method->destaircased);
     EXPECT_EQ(experiment.reference.method->arithmetic, Arithmetic::float64);
-    EXPECT_GT(experiment.reference.reference_degrees, 0.01);
+    EXPECT_GT(experiment.reference.error.rms, 0.01);
     EXPECT_THAT(experiment.reference.description, HasSubstr("after smoothing its steps"));
     // The result is more accurate than the choice for the unchanged map.
     BumpOptions plain = field.options;
@@ -342,11 +315,11 @@ TEST(BumpExperiment, ExpectedErrorCombinesMapAndConversion) {
     BumpExperimentOptions options = untimed(field);
     const BumpExperiment guess = measure_bump(sample_of(field.heights), methods, options);
     const BumpExperiment known = measure_bump(field, methods, options);
-    EXPECT_GT(guess.reference.reference_degrees, 1.0);
-    EXPECT_GT(guess.reference.reference_max_degrees, guess.reference.reference_degrees);
+    EXPECT_GT(guess.reference.error.rms, 1.0);
+    EXPECT_GT(guess.reference.error.max, guess.reference.error.rms);
     for (std::size_t i = 0; i < methods.size(); ++i) {
         const ExpectedError error = expected_error(guess.reference, guess.measurements[i]);
-        EXPECT_EQ(error.map, guess.reference.reference_degrees);
+        EXPECT_EQ(error.map, guess.reference.error.rms);
         EXPECT_EQ(error.added, guess.measurements[i].error.rms);
         EXPECT_EQ(error.total(), std::hypot(error.map, error.added));
         const ExpectedError upper = expected_error_upper(guess.reference, guess.measurements[i]);
@@ -363,16 +336,16 @@ TEST(BumpExperiment, ExpectedErrorCombinesMapAndConversion) {
         }
     }
     // The added error of many methods is far below a limit that no total error meets.
-    const double limit = 0.5 * guess.reference.reference_degrees;
+    const double limit = 0.5 * guess.reference.error.rms;
     EXPECT_EQ(cheapest_within(guess, {limit, std::nullopt, ErrorKind::rms}), nullptr);
     EXPECT_NE(cheapest_within(guess, {std::nullopt, limit, ErrorKind::rms}), nullptr);
-    const BumpMeasurement* total = cheapest_within(
-        guess, {1.5 * guess.reference.reference_degrees, std::nullopt, ErrorKind::rms});
+    const BumpMeasurement* total =
+        cheapest_within(guess, {1.5 * guess.reference.error.rms, std::nullopt, ErrorKind::rms});
     ASSERT_NE(total, nullptr);
     EXPECT_EQ(total->method.bits, 8);
     // An unknown error is within no limit.
     BumpExperiment unknown = guess;
-    unknown.reference.reference_degrees = std::numeric_limits<double>::quiet_NaN();
+    unknown.reference.error.rms = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(cheapest_within(unknown, {90.0, std::nullopt, ErrorKind::rms}), nullptr);
 }
 

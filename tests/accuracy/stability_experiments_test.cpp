@@ -15,12 +15,13 @@ using namespace relief::accuracy::detail;
 namespace {
 
 TEST(Sweeps, FindTheFailurePointOfEachMethod) {
-    Sweeps sweeps({"good", "growing", "lost"}, 1.0);
-    sweeps.add("size", "Larger", "size", 6, 2, [](std::size_t method, double value) {
-        if (method == 0) return std::vector<float>{0.25F, 0.25F};
-        if (method == 1) return std::vector<float>{static_cast<float>(1e-3 * value)};
-        return std::vector<float>{0.0F, value > 50.0 ? NAN : 0.5F};
-    });
+    Sweeps sweeps({"good", "growing", "lost"}, 1.0,
+                  {{"size", "Larger", "size", 6, 2, [](std::size_t method, double value) {
+                        if (method == 0) return std::vector<float>{0.25F, 0.25F};
+                        if (method == 1)
+                            return std::vector<float>{static_cast<float>(1e-3 * value)};
+                        return std::vector<float>{0.0F, value > 50.0 ? NAN : 0.5F};
+                    }}});
     EXPECT_EQ(sweeps.measure(0).count, 8U);
     sweeps.measure(1);
     EXPECT_EQ(sweeps.measure(2).undefined, 3U);
@@ -39,9 +40,9 @@ TEST(Sweeps, FindTheFailurePointOfEachMethod) {
 }
 
 TEST(Sweeps, SayThatAllAreWithinTheLimitOrNone) {
-    Sweeps sweeps({"a", "b"}, 1.0);
-    sweeps.add("x", "Good", "x", 1, 1, [](std::size_t, double) { return std::vector{0.5F}; });
-    sweeps.add("y", "Bad", "y", 1, 1, [](std::size_t, double) { return std::vector{5.0F}; });
+    Sweeps sweeps({"a", "b"}, 1.0,
+                  {{"x", "Good", "x", 1, 1, [](auto, auto) { return std::vector{0.5F}; }},
+                   {"y", "Bad", "y", 1, 1, [](auto, auto) { return std::vector{5.0F}; }}});
     sweeps.measure(0);
     sweeps.measure(1);
     EXPECT_EQ(sweeps.breaks(),

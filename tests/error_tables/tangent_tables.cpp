@@ -21,8 +21,8 @@ using namespace relief::accuracy::detail;
 
 namespace {
 
-const std::vector<TangentFrameMethod>& methods() {
-    static const std::vector<TangentFrameMethod> all = tangent_methods();
+const std::vector<FrameMethod>& methods() {
+    static const std::vector<FrameMethod> all = tangent_methods();
     return all;
 }
 
@@ -48,25 +48,22 @@ std::string rms_and_max(const ErrorStats& errors) {
 
 constexpr double not_compared = std::numeric_limits<double>::quiet_NaN();
 
-/// Returns a table with one row for each mesh; measured(reference, tangents, method) returns the
-/// errors. The first column shows the reference tangents, the lower bound for every method.
+/// Returns a table with one row for each mesh; measured(reference, frames) returns the errors. The
+/// first column shows the reference tangents, the lower bound for every method.
 template <typename Measured>
 std::string method_table(const std::string& title, bool at_corners, Measured measured) {
-    std::vector<std::string> names = {"*true*"};
-    for (const TangentFrameMethod& method : methods())
-        names.push_back(method.name);
+    std::vector<std::string> names = names_of(methods());
+    names.insert(names.begin(), "*true*");
     std::string text = "\n" + title + "\n\n" + table_header(names);
     for (const NamedMesh& mesh : meshes()) {
         const ErrorStats least =
-            measured(mesh.reference, exact_tangents(mesh.reference), ShaderBasis::as_interpolated);
+            measured(mesh.reference, TangentFrames{exact_tangents(mesh.reference)});
         std::vector<double> ranks = {not_compared};
         std::vector<std::string> cells = {rms_and_max(least)};
-        for (const TangentFrameMethod& method : methods()) {
-            const bool none = at_corners && !method.tangents;
+        for (const FrameMethod& method : methods()) {
+            const bool none = at_corners && !method.has_work;
             const ErrorStats errors =
-                none ? ErrorStats{}
-                     : measured(mesh.reference, method.tangents_of(mesh.reference.mesh),
-                                method.basis);
+                none ? ErrorStats{} : measured(mesh.reference, method.compute(mesh.reference.mesh));
             ranks.push_back(none ? not_compared : errors.rms);
             cells.push_back(none ? "" : rms_and_max(errors));
         }
@@ -81,8 +78,9 @@ std::string method_tables() {
                "maximum error in degrees",
                false, texel_errors) +
            method_table("The tangent's direction at vertices", true,
-                        [](const TexturedMesh& reference, const CornerTangents& tangents,
-                           ShaderBasis) { return corner_tangent_errors(reference, tangents); }) +
+                        [](const TexturedMesh& reference, const TangentFrames& frames) {
+                            return error_stats(corner_tangent_angles(reference, frames.tangents));
+                        }) +
            method_table("The tangent's direction inside triangles", false, inner_tangent_errors) +
            "\n";
 }
@@ -109,14 +107,13 @@ std::string cost_table() {
     text += table_header({"error: torus, jittered", "cubic, anisotropic", "plate with thin bevels",
                           "computing", "bytes per vertex: floats; codes", "drawing"});
     for (std::size_t i = 0; i < methods().size(); ++i) {
-        const TangentFrameMethod& method = methods()[i];
+        const FrameMethod& method = methods()[i];
         std::vector<std::string> cells;
         for (const std::string& name : shown) {
             const auto mesh = std::find_if(meshes().begin(), meshes().end(),
                                            [&](const NamedMesh& one) { return one.name == name; });
             const TexturedMesh& reference = mesh->reference;
-            cells.push_back(in_digits(
-                texel_errors(reference, method.tangents_of(reference.mesh), method.basis).rms));
+            cells.push_back(in_digits(texel_errors(reference, method.compute(reference.mesh)).rms));
         }
         const MeasuredCost& cost = measured_costs.at(i);
         cells.insert(cells.end(), {cost.computing, cost.bytes, cost.device});
@@ -126,16 +123,16 @@ std::string cost_table() {
 }
 
 std::string mismatch_table(const std::string& title, const TexturedMesh& reference) {
-    std::vector<TangentFrameMethod> bases = methods();
+    std::vector<FrameMethod> bases = methods();
     bases.push_back(made_unit(bases.front()));
     std::vector<std::string> names;
-    for (const TangentFrameMethod& reader : bases)
+    for (const FrameMethod& reader : bases)
         names.push_back("read in " + reader.name);
     std::string text = "\n" + title + "\n\n" + table_header(names);
-    for (const TangentFrameMethod& baker : bases) {
+    for (const FrameMethod& baker : bases) {
         std::vector<double> ranks;
         std::vector<std::string> cells;
-        for (const TangentFrameMethod& reader : bases) {
+        for (const FrameMethod& reader : bases) {
             const ErrorStats errors = mismatch_errors(reference, baker, reader);
             ranks.push_back(errors.rms);
             cells.push_back(rms_and_max(errors));

@@ -205,7 +205,7 @@ void add_experiment(Summary& summary, const BumpExperiment& experiment, ErrorKin
                     reference.description),
         {{"reference",
           {{"what", reference.description},
-           {"own_degrees", reference.reference_degrees},
+           {"own_degrees", reference.error.rms},
            {"texels", experiment.texels},
            {"whole", experiment.is_whole}}}});
     summary.add("", has_table ? comparison_table(experiment) : Summary::Lines{},

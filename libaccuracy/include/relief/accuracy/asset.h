@@ -64,19 +64,13 @@ struct BumpReference {
     /// The method of the reference, in float64 and not rounded to codes; absent if the exact
     /// normals are known.
     std::optional<BumpMethod> method;
-    /// The expected RMS error of the reference against the surface from which the map was made, in
-    /// degrees. Measured errors do not include it. 0 if the exact normals are known.
-    double reference_degrees = 0.0;
-    /// The expected mean of that error, the error that 99 % do not exceed, and the maximum.
-    double reference_mean_degrees = 0.0;
-    double reference_p99_degrees = 0.0;
-    double reference_max_degrees = 0.0;
-    /// The upper ends of all, if the map does not show whether detail is real (KernelChoice::
-    /// upper_rms_degrees). Not less than the values above.
-    double upper_degrees = 0.0;
-    double upper_mean_degrees = 0.0;
-    double upper_p99_degrees = 0.0;
-    double upper_max_degrees = 0.0;
+    /// The expected error of the reference against the surface from which the map was made, in
+    /// degrees: rms, mean, p99 and max. Measured errors do not include it. Zeros if the exact
+    /// normals are known.
+    ErrorStats error;
+    /// The upper end of that error, if the map does not show whether detail is real
+    /// (KernelChoice::upper_rms_degrees). Not less than `error`.
+    ErrorStats upper_error;
     std::string description;  ///< A description for people.
 };
 
@@ -197,15 +191,15 @@ struct MethodRequest {
 
 /// The input of recommended(). The spans must be valid until it returns.
 struct RecommendationRule {
-    MethodRequest request;
+    MethodRequest request{};
     CostKind cost = CostKind::time;
     /// An invisible error. The search for the knee adds its square to that of each error.
     double negligible_error = 0.0;
     /// For each measurement, whether it may be recommended; empty: all.
-    std::span<const unsigned char> choosable;
+    std::span<const unsigned char> choosable{};
     /// For each measurement, a cost that does not depend on measured time (such as operations per
     /// texel). It decides between methods of equal size if nothing was timed. Empty: unknown.
-    std::span<const double> nominal_costs;
+    std::span<const double> nominal_costs{};
     /// The name of the source of Experiment::reference_error, such as "the map itself".
     std::string reference = "the reference itself";
     /// The reference has an error of unknown size, so that no limit of the error is kept.
