@@ -90,48 +90,48 @@ TEST(Recommended, IgnoresGainsBelowTheUncertaintyOfTheReference) {
     EXPECT_EQ(recommended(usual(), rule).method, 0U);
 }
 
-TEST(Recommended, KeepsWithinAnError) {
-    RecommendationRule rule;
-    rule.request.kind = ErrorKind::rms;
-    rule.request.max_error = 0.045;
-    EXPECT_EQ(recommended(usual(), rule).method, 3U);
-    rule.request.max_error = 2.0;
-    EXPECT_EQ(recommended(usual(), rule).method, 0U);
-    rule.request.kind = default_error_kind;  // 2, 2.4, 0.1, 0.08
-    rule.request.max_error = 0.09;
-    EXPECT_EQ(recommended(usual(), rule).method, 3U);
-    EXPECT_THAT(recommended(usual(), rule).description,
-                HasSubstr("best: 0.04 degrees RMS, 0.08 degrees (99 %) at "));
-    // The reference has an error in this statistic, too.
-    rule.limited_reference = 0.05;
-    EXPECT_EQ(recommended(usual(), rule).method, std::nullopt);
-    rule.limited_reference.reset();
-    rule.request.max_error = 2.0;
-    rule.request.kind = ErrorKind::max;  // 3, 3.6, 0.15, 0.12
-    EXPECT_EQ(recommended(usual(), rule).method, 2U);
-    rule.request.max_error = 0.01;
-    const Recommendation none = recommended(usual(), rule);
-    EXPECT_EQ(none.method, std::nullopt);
-    EXPECT_EQ(none.description,
-              "no method is within 0.01 degrees (maximum): the smallest error is 0.12, with best");
+struct LimitCase {
+    std::optional<double> max_error, max_seconds;
+    ErrorKind kind;
+    std::optional<std::size_t> method;
+    const char* description = "";  ///< A part of it.
+};
+
+TEST(Recommended, KeepsWithinLimits) {
+    // 99 %: 2, 2.4, 0.1 and 0.08; maximum: 3, 3.6, 0.15 and 0.12.
+    using enum ErrorKind;
+    for (const LimitCase& row : std::vector<LimitCase>{
+             {0.045, {}, rms, 3},
+             {2.0, {}, rms, 0},
+             {0.09, {}, p99, 3, "best: 0.04 degrees RMS, 0.08 degrees (99 %) at "},
+             {2.0, {}, max, 2},
+             {0.01,
+              {},
+              max,
+              {},
+              "no method is within 0.01 degrees (maximum): the smallest error is 0.12, with best"},
+             {{}, 0.1, p99, 2},
+             {{}, 0.03, p99, 0},
+             {{}, 0.001, p99, {}, "no method is within 1.00 ms: the fastest takes 10.0 ms, with "},
+             {0.045,
+              0.1,
+              rms,
+              {},
+              "no method is within 0.045 degrees (RMS) and 100 ms: the fastest with that error "
+              "takes 123 ms, with best"}}) {
+        RecommendationRule rule;
+        rule.request = {row.max_error, row.max_seconds, row.kind};
+        const Recommendation found = recommended(usual(), rule);
+        EXPECT_EQ(found.method, row.method) << found.description;
+        EXPECT_THAT(found.description, HasSubstr(row.description));
+    }
 }
 
-TEST(Recommended, KeepsWithinATime) {
+TEST(Recommended, AddsTheErrorOfTheReferenceInTheStatisticOfTheLimit) {
     RecommendationRule rule;
-    rule.request.max_seconds = 0.1;
-    EXPECT_EQ(recommended(usual(), rule).method, 2U);
-    rule.request.max_seconds = 0.03;
-    EXPECT_EQ(recommended(usual(), rule).method, 0U);
-    rule.request.max_seconds = 0.001;
-    EXPECT_EQ(recommended(usual(), rule).description,
-              "no method is within 1.00 ms: the fastest takes 10.0 ms, with rough");
-    rule.request.max_seconds = 0.1;
-    rule.request.kind = ErrorKind::rms;
-    rule.request.max_error = 0.045;
-    EXPECT_EQ(recommended(usual(), rule).description,
-              "no method is within 0.045 degrees (RMS) and 100 ms: the fastest with that error "
-              "takes 123 ms, "
-              "with best");
+    rule.request.max_error = 0.09;
+    rule.limited_reference = 0.05;
+    EXPECT_EQ(recommended(usual(), rule).method, std::nullopt);
 }
 
 TEST(Recommended, ExcludesUnusableMethods) {

@@ -41,28 +41,12 @@ inline std::vector<accuracy::Experiment> run_quick(accuracy::Subject subject) {
     return accuracy::run_experiments(std::array{subject}, quick_untimed());
 }
 
-/// The experiment with a title.
-inline const accuracy::Experiment& titled(const std::vector<accuracy::Experiment>& all,
-                                          const std::string& title) {
-    for (const accuracy::Experiment& one : all) {
-        if (one.title == title) return one;
-    }
-    throw std::runtime_error("no experiment " + title);
-}
-
 inline const accuracy::Measurement& measurement_of(const accuracy::Experiment& experiment,
                                                    const std::string& method) {
     for (const accuracy::Measurement& one : experiment.measurements) {
         if (one.method == method) return one;
     }
     throw std::runtime_error(experiment.id + " has no method " + method);
-}
-
-inline const accuracy::Curve& curve_of(const accuracy::Chart& chart, const std::string& method) {
-    for (const accuracy::Curve& one : chart.curves) {
-        if (one.method == method) return one;
-    }
-    throw std::runtime_error(chart.id + " has no curve " + method);
 }
 
 inline void expect_sound(const ErrorStats& error) {

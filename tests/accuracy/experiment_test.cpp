@@ -19,30 +19,12 @@ using namespace relief::accuracy;
 namespace {
 
 using testing::ElementsAre;
-using testing::IsEmpty;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::vector<bool> of(std::vector<MethodCost> prices) {
     return pareto_optimal(prices);
-}
-
-TEST(Frontier, ContainsParetoOptimalMethods) {
-    EXPECT_THAT(of({{1.0, 3.0}, {2.0, 2.0}, {2.5, 2.5}, {3.0, 1.0}}),
-                ElementsAre(true, true, false, true));
-    EXPECT_THAT(of({}), IsEmpty());
-    EXPECT_THAT(of({{5.0, 5.0}}), ElementsAre(true));
-}
-
-TEST(Frontier, BreaksTiesByErrorAndTime) {
-    EXPECT_THAT(of({{1.0, 1.0}, {2.0, 1.0}}), ElementsAre(true, false));
-    EXPECT_THAT(of({{1.0, 2.0}, {1.0, 1.0}}), ElementsAre(false, true));
-}
-
-TEST(Frontier, ContainsAllOrNoneOfEqualMethods) {
-    EXPECT_THAT(of({{1.0, 1.0}, {1.0, 1.0}, {2.0, 2.0}, {2.0, 2.0}}),
-                ElementsAre(true, true, false, false));
 }
 
 TEST(Frontier, ExcludesUnknownResults) {

@@ -8,8 +8,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiment_checks.h"
-
 namespace relief::test {
 using namespace relief::accuracy;
 using namespace relief::accuracy::detail;
@@ -72,31 +70,6 @@ TEST(FrameErrors, CountHandsThatAreLost) {
     found.tangents[3].w = -found.tangents[3].w;
     found.tangents[4].w = -found.tangents[4].w;
     EXPECT_EQ(frame_errors(ground_truth, found).flipped_frames, 2U);
-}
-
-TEST(FrameExperiments, ErrorsAreThoseOfTheEncodings) {
-    const Experiment experiment = run_one("storage/frames");
-    ASSERT_EQ(experiment.measurements.size(), 2 * all_frame_encodings.size() - 1);
-    for (const Measurement& one : experiment.measurements) {
-        SCOPED_TRACE(one.method);
-        EXPECT_EQ(one.error.count, 2 * static_cast<std::size_t>(experiment.items));
-        EXPECT_EQ(one.note, "");
-    }
-    for (const int bits : {8, 10, 16}) {
-        // A sphere has 41253 square degrees. A code of 2 x 8 bits covers about 0.63 of them: a
-        // square with a side of 0.79 degrees, whose points have an RMS distance of 0.79 / sqrt(6) =
-        // 0.32 from its center. The tangent has one bit less. The factor allows for the unequal
-        // sizes of octahedral codes.
-        const double size = std::pow(2.0, 8.0 - bits);
-        const std::string name = "octahedral" + std::to_string(bits);
-        const double nearest = measurement_of(experiment, name + ", nearest").error.rms;
-        EXPECT_NEAR(nearest, 0.4 * size, 0.15 * size);
-        EXPECT_LT(measurement_of(experiment, name + ", best").error.rms, nearest);
-    }
-    const Measurement& floats = measurement_of(experiment, "float32, nearest");
-    EXPECT_LT(floats.error.max, rounding);
-    EXPECT_GT(floats.error.max, 1e-7) << "float has an error too";
-    EXPECT_EQ(floats.cost.stored_bytes, 28.0);
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include <span>
 #include <vector>
 
-#include "experiment_checks.h"
 #include "experiment_parts.h"
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/image_file.h"
@@ -112,81 +111,6 @@ TEST(NormalCodes, RowsCoverBothDecoders) {
                 2.0 * row("xyz 16 bit").rms, 5e-5);
 }
 
-using LongReal = long double;
-
-/// The height of smooth_surface(), by an independent formula.
-LongReal smooth_height_at(std::span<const HeightWave> waves, LongReal x, LongReal y) {
-    LongReal sum = 0;
-    for (const HeightWave& wave : waves) {
-        sum += static_cast<LongReal>(wave.amplitude) *
-               std::sin(static_cast<LongReal>(wave.frequency.x) * x +
-                        static_cast<LongReal>(wave.frequency.y) * y +
-                        static_cast<LongReal>(wave.phase));
-    }
-    return sum;
-}
-
-/// Central differences of two widths, extrapolated; the error is O(h^4).
-template <typename Function>
-LongReal slope_of(const Function& function) {
-    const auto central = [&](LongReal h) { return (function(h) - function(-h)) / (2 * h); };
-    return (4 * central(0.05L) - central(0.1L)) / 3;
-}
-
-TEST(SmoothSurface, HasTheNormalsOfNumericDerivatives) {
-    constexpr int map_side = 256;  // The same size as in the experiment.
-    const std::vector<HeightWave> waves = tiling_waves(map_side, map_side, 5, 128.0, 0.2, 41);
-    const std::vector<glm::dvec3> normals = smooth_surface(map_side);
-    ASSERT_EQ(normals.size(), 256U * 256U);
-    double squared_slopes = 0.0;
-    for (std::size_t i = 0; i < normals.size(); ++i) {
-        squared_slopes += 1.0 / (normals[i].z * normals[i].z) - 1.0;
-        if (i % 31 != 0) continue;
-        const LongReal x = static_cast<LongReal>(i % map_side);
-        const LongReal y = static_cast<LongReal>(i / map_side);
-        const LongReal dx = slope_of([&](LongReal h) { return smooth_height_at(waves, x + h, y); });
-        const LongReal dy = slope_of([&](LongReal h) { return smooth_height_at(waves, x, y + h); });
-        // Rows run downwards, the y of normals upwards.
-        const glm::dvec3 expected(static_cast<double>(-dx), static_cast<double>(dy), 1.0);
-        // For waves of 128 texels and more, the term of h^4 is 1e-11 degrees.
-        ASSERT_LE(degrees_between(normals[i], expected), 1e-10) << i;
-    }
-    EXPECT_GT(std::sqrt(squared_slopes / 65536.0), 0.1) << "codes of 8 bits change with the slope";
-}
-
-/// Mean and RMS angle of evenly spread directions of which half lose the sign of x: twice the arc
-/// sine of |x|, and |x| is evenly distributed.
-TEST(NormalCodes, ThatLoseASignAreAsFarOffAsTheyMustBe) {
-    std::vector<glm::dvec3> directions = even_directions(2 * 128 * 128);
-    directions.resize(directions.size() / 2);
-    const Image normals = image_of_normals(directions, 128);
-    const NormalCode right = code_named("xyz 16 bit");
-    NormalCode broken = right;
-    broken.encode = [right](const Image& all) {
-        return [decode = right.encode(all)] {
-            Image decoded = decode();
-            for (std::size_t i = 0; i < decoded.sample_count(); i += 3)
-                decoded.as<float>()[i] = std::abs(decoded.as<float>()[i]);
-            return decoded;
-        };
-    };
-    EXPECT_LT(map_errors(right.stored(normals), directions).max, 0.002);
-    const ErrorStats errors = map_errors(broken.stored(normals), directions);
-    constexpr double half_turn_degrees = 180.0;
-    // The integrals of 2 asin(x) and its square over 0 to 1, halved; 16384 directions approximate
-    // the integral to a few thousandths.
-    const double mean = (std::numbers::pi / 2.0 - 1.0) / std::numbers::pi * half_turn_degrees;
-    const double square = std::numbers::pi * std::numbers::pi / 2.0 - 4.0;
-    EXPECT_NEAR(errors.mean, mean, 0.01);
-    EXPECT_NEAR(errors.rms, std::sqrt(square) / std::numbers::pi * half_turn_degrees, 0.01);
-    EXPECT_GT(errors.max, 175.0);
-    EXPECT_NEAR(errors.median, 0.0, 0.1) << "half of all are right";
-    EXPECT_EQ(errors.undefined, 0U);
-    // The means of patches show the defect as well.
-    EXPECT_GT(patch_errors(broken.stored(normals), normals, 8).rms, 20.0);
-    EXPECT_LT(patch_errors(right.stored(normals), normals, 8).rms, 0.001);
-}
-
 struct Published {
     const char* code;
     double mean;
@@ -215,18 +139,6 @@ TEST(NormalCodes, ErrAsPublished) {
     }
 }
 
-TEST(NormalCodes, BestOfFourCodesIsAtLeastAsCloseAsTheNearest) {
-    const std::vector<glm::dvec3> directions = even_directions(64 * 64);
-    const Image normals = image_of_normals(directions, 64);
-    for (const char* bits : {"8", "10", "12", "16"}) {
-        const std::string name = std::string("octahedral 2 x ") + bits + " bit";
-        const Image nearest = angles_of(code_named(name).stored(normals), directions);
-        const Image best = angles_of(code_named(name + ", best").stored(normals), directions);
-        for (std::size_t i = 0; i < nearest.sample_count(); ++i)
-            ASSERT_LE(best.as<float>()[i], nearest.as<float>()[i] + 1e-5F) << name;
-    }
-}
-
 TEST(NormalCodes, HalvesHaveTheErrorsOfTheFilesThatAreWritten) {
     // (n + 1) / 2 is in 0.5 to 1, where half floats are 2^-11 apart, so n has steps of 2^-10.
     std::vector<glm::dvec3> directions = even_directions(2 * 256 * 256);
@@ -251,29 +163,6 @@ TEST(NormalCodes, HalvesHaveTheErrorsOfTheFilesThatAreWritten) {
     EXPECT_LT(errors.max, 1.25 * turn);
     EXPECT_NEAR(errors.rms, 0.0195, 0.0002);
     EXPECT_TRUE(report.empty());
-}
-
-TEST(NormalCodes, BytesAreThoseOfTheCodes) {
-    EXPECT_EQ(code_named("xyz 8 bit").bytes, 3.0);
-    EXPECT_EQ(code_named("xyz 10 bit").bytes, 4.0);
-    EXPECT_EQ(code_named("xyz float").bytes, 12.0);
-    EXPECT_EQ(code_named("xy 16 bit").bytes, 4.0);
-    EXPECT_EQ(code_named("octahedral 2 x 8 bit, best").bytes, 2.0);
-    EXPECT_EQ(code_named("octahedral 2 x 12 bit").bytes, 3.0);
-}
-
-TEST(CompressionExperiment, FilteringAveragesTheErrorsOfCodes) {
-    const Experiment whole = run_one("compression/waves");
-    const Experiment filtered = run_one("compression/filtered");
-    for (const char* method : {"xyz 8 bit", "bc5, normal", "bc7, normal"}) {
-        EXPECT_LT(measurement_of(filtered, method).error.rms,
-                  measurement_of(whole, method).error.rms)
-            << method;
-    }
-    // The mean of four exact normals is not the normal between them.
-    const double rms = measurement_of(filtered, "xyz 16 bit").error.rms;
-    EXPECT_GT(rms, 0.002);
-    EXPECT_LT(rms, 0.5);
 }
 
 }  // namespace

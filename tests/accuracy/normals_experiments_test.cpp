@@ -60,16 +60,6 @@ TEST(NormalErrors, CoverInnerVerticesAndCountZeroVectors) {
     EXPECT_LE(errors.max, 1e-5);
 }
 
-TEST(NormalMethods, AreEightWeightingsInEachArithmetic) {
-    const auto methods = normal_methods(std::array{Arithmetic::float64, Arithmetic::float32});
-    std::set<std::string> names;
-    for (const NormalMethod& method : methods)
-        names.insert(method.name);
-    EXPECT_EQ(methods.size(), 16U);
-    EXPECT_EQ(names.size(), 16U);
-    EXPECT_TRUE(names.contains("area-angle, float32"));
-}
-
 TEST(NormalMethods, AgreeOnAPlaneAndDifferOnASurface) {
     Mesh plane;
     plane.positions = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 3, 0}};

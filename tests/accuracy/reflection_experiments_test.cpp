@@ -11,7 +11,6 @@
 #include "relief/mesh/image.h"
 #include "relief/shade/image_compare.h"
 #include "rendered_methods.h"
-#include "support/labels.h"
 
 namespace relief {
 using namespace relief::accuracy;
@@ -82,50 +81,6 @@ TEST(RoughMirror, FlattensGradientsByTheClosedForm) {
         EXPECT_LT(left, 1.0);
     }
     EXPECT_LT(left_of_slope(0.9), 0.8) << "rough enough to tell";
-}
-
-TEST(CubeMapSize, WithMoreSamplesAPixelTheLargestMapsDiffer) {
-    const GlDevice device;
-    if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
-    constexpr int ball_side = 160;
-    const Image ground_truth = exact_mirror(waves_and_lights, ball_side, 4);
-    const auto error_with = [&](const EnvironmentFormula& shown, int map_side) {
-        return rendered_error(
-            device, {"", {}, mirror_ball(cube_map_of(shown, map_side), 0.0), 1, 4}, ground_truth);
-    };
-    const double of_large = error_with(waves_and_lights, 256);
-    EXPECT_LT(of_large, 0.02);
-    EXPECT_LT(of_large, 0.7 * error_with(waves_and_lights, 128));
-    // An environment that is mirrored, or a tenth too dark, is detected.
-    EXPECT_GT(error_with(
-                  [](const glm::dvec3& d) {
-                      return waves_and_lights({-d.x, d.y, d.z});
-                  },
-                  64),
-              10.0 * of_large);
-    EXPECT_GT(error_with([](const glm::dvec3& d) { return 0.9 * waves_and_lights(d); }, 256),
-              4.0 * of_large);
-}
-
-TEST_LABELS(not_sanitized);
-TEST(GlossyLevels, WrongRoughnessOrEnvironmentHasALargeError) {
-    const GlDevice device;
-    if (!device.is_available()) GTEST_SKIP() << "no OpenGL";
-    constexpr int ball_side = 32;
-    constexpr double roughness = 0.5;  // That of the middle one of five levels: none are mixed.
-    constexpr int map_side = 128;
-    const Environment right = cube_map_of(waves_and_lights, map_side);
-    const Image ground_truth = supersampled_reference(mirror_ball(right, roughness), ball_side, 1);
-    const auto error_of = [&](const Environment& shown, double drawn_roughness) {
-        return rendered_error(device, {"", {}, mirror_ball(shown, drawn_roughness)}, ground_truth);
-    };
-    EXPECT_LT(error_of(right, roughness), 0.012);
-    EXPECT_GT(error_of(right, 0.75), 0.05);
-    EXPECT_GT(error_of(right, 0.25), 0.05);
-    const auto dimmed = [](const glm::dvec3& d) { return 0.9 * waves_and_lights(d); };
-    EXPECT_GT(error_of(cube_map_of(dimmed, map_side), roughness), 0.05);
-    const auto turned = [](const glm::dvec3& d) { return waves_and_lights({-d.x, d.y, d.z}); };
-    EXPECT_GT(error_of(cube_map_of(turned, map_side), roughness), 0.05);
 }
 
 }  // namespace

@@ -61,18 +61,6 @@ TEST(RenderedMethods, DetectARotatedLight) {
               std::string::npos);
 }
 
-TEST(RenderedMethods, AverageRepeatedPictures) {
-    const auto device = std::make_shared<const GlDevice>();
-    if (!device->is_available()) GTEST_SKIP() << "no OpenGL";
-    const std::vector<RenderedMethod> methods = {
-        {"1", {}, ball()}, {"2 x 2", {}, ball(), 1, 2}, {"4 x 4", {}, ball(), 1, 4}};
-    const Experiment experiment = render(device, methods, 8);
-    for (const std::size_t i : {1U, 2U}) {
-        EXPECT_GT(experiment.measurements[i].error.psnr.value(),
-                  experiment.measurements[i - 1].error.psnr.value() + 3.0);
-    }
-}
-
 TEST(RenderedMethods, AreTimedInTurnsInSeconds) {
     const auto device = std::make_shared<const GlDevice>();
     if (!device->is_available()) GTEST_SKIP() << "no OpenGL";

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiment_checks.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/statistics.h"
@@ -87,48 +86,6 @@ TEST(Needles, HaveTheNormalsThatIntegersGive) {
             EXPECT_LT(degrees_between(normal, needles.normals[t.x]), 1e-4) << width;
         }
     }
-}
-
-using LongVector = glm::vec<3, long double>;
-
-/// (b - a) x (c - a) multiplied out. Positions are not subtracted, only products, which have 11
-/// bits more than those of double.
-LongVector multiplied_out(const LongVector& a, const LongVector& b, const LongVector& c) {
-    return glm::cross(a, b) + glm::cross(b, c) + glm::cross(c, a);
-}
-
-TEST(Needles, HaveTheNormalsOfAnotherFormulaDownToTheNarrowest) {
-    for (const double width : {1.0, 1e-3, 1e-6, 1e-9, 1e-12}) {
-        const Needles needles = make_needles(300, width, 7);
-        double furthest = 0.0;
-        for (const glm::uvec3& t : needles.mesh.triangles) {
-            const auto corner = [&](int i) { return LongVector(needles.mesh.positions[t[i]]); };
-            const LongVector normal = multiplied_out(corner(0), corner(1), corner(2));
-            const long double length = glm::length(normal);
-            // Short sides are perpendicular to long ones, which end within `width` of distance 1.
-            if (width < 1.0) {
-                EXPECT_NEAR(static_cast<double>(length) / width, 1.0, width + 1e-6);
-            }
-            for (int i = 0; i < 3; ++i) {
-                furthest = std::max(
-                    furthest, degrees_between(glm::dvec3(normal / length), needles.normals[t[i]]));
-            }
-        }
-        // Doubles are 2^-53 apart, which is 6e-15 degrees; a cross product accumulates a few of
-        // them.
-        EXPECT_LT(furthest, 1e-13) << width;
-    }
-}
-
-TEST(Needles, SmallErrorsOfNormalsAreDetected) {
-    const Needles needles = make_needles(1, 1e-12, 7);
-    const glm::uvec3 t = needles.mesh.triangles.front();
-    const auto corner = [&](int i) { return LongVector(needles.mesh.positions[t[i]]); };
-    const glm::dvec3 along = glm::normalize(glm::dvec3(corner(1)) - glm::dvec3(corner(0)));
-    const LongVector normal = multiplied_out(corner(0), corner(1), corner(2));
-    const glm::dvec3 leaning = needles.normals[t.x] + 1e-9 * along;
-    EXPECT_NEAR(degrees_between(glm::dvec3(normal / glm::length(normal)), leaning),
-                1e-9 * 180.0 / std::numbers::pi, 1e-12);
 }
 
 TEST(Needles, AreAsNarrowAsAsked) {

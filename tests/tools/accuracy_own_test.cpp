@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -131,33 +130,6 @@ TEST(AccuracyOwn, UnreachableLimitExitsWith1) {
     EXPECT_EQ(strict.exit_code, 1);
     EXPECT_THAT(strict.out,
                 HasSubstr("no method is within 0 degrees (99 %): the smallest error is "));
-}
-
-TEST_LABELS(not_sanitized);
-TEST(AccuracyOwn, ABoundIsHeldAgainstTheErrorOfTheMapToo) {
-    const Workplace workplace;
-    workplace.write_bricks("bricks.png");
-    const std::string line =
-        "relief-accuracy own bricks.png --quick --no-times --json --max-error ";
-    const json experiment = json::parse(workplace.run(line + "90").out)["experiments"][0];
-    const auto map_error = experiment["reference_error"].get<double>();
-    ASSERT_GT(map_error, 0.5);
-    double min_added = 180.0;
-    for (const json& one : experiment["measurements"]) {
-        const json& expected = one["expected_error"];
-        EXPECT_EQ(expected["map"], experiment["reference_error"]);
-        EXPECT_EQ(expected["added"], one["error"]["rms"]);
-        EXPECT_NEAR(expected["total"].get<double>(),
-                    std::hypot(map_error, one["error"]["rms"].get<double>()), 1e-9);
-        min_added = std::min(min_added, one["error"]["rms"].get<double>());
-    }
-    // The limit includes the error of the map, also for methods that add less than half a degree.
-    ASSERT_LT(min_added, 0.5);
-    const ProgramResult bounded = workplace.run(line + "0.5");
-    EXPECT_EQ(bounded.exit_code, 1);
-    const auto finding = json::parse(bounded.out)["experiments"][0]["finding"].get<std::string>();
-    EXPECT_THAT(finding, HasSubstr("no method is within 0.5 degrees (99 %)"));
-    EXPECT_THAT(finding, HasSubstr("(the map itself "));
 }
 
 /// Returns heights of smooth bumps, 0 to 1.

@@ -96,12 +96,6 @@ TEST(ProcessorUse, ExcludesTheTimeOfThisProcess) {
     EXPECT_LE(others->processors, others->available - own / seconds + tolerance);
 }
 
-TEST(AccuracyJson, HasNoFileNamesWithoutFiles) {
-    const json report = json_of(sample_report(), false);
-    EXPECT_TRUE(report["experiments"][0]["heat_maps"][0]["file"].is_null());
-    EXPECT_TRUE(report["experiments"][0]["pictures"][0]["before"].is_null());
-}
-
 /// A broken report with its error message.
 struct Broken {
     const char* pointer;
@@ -151,13 +145,6 @@ TEST(BrokenReport, IsRefusedWithAPointer) {
             EXPECT_EQ(error.what(), (workplace / "report.json").string() + ": " + row.error);
         }
     }
-}
-
-TEST(AccuracyJson, RefusesInvalidText) {
-    const Workplace workplace;
-    workplace.write("report.json", "{\"format\": ");
-    EXPECT_THROW(read_report(workplace / "report.json"), FileError);
-    EXPECT_THROW(read_report(workplace / "none.json"), FileError);
 }
 
 TEST(AccuracyCsv, HasARowForEachMeasurementAndQuotesCommas) {
