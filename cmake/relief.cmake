@@ -67,7 +67,8 @@ endif()
 # precompiled. Libraries and tools compile each file alone, so that a change compiles little. Test files are compiled
 # in batches, which takes half of the time. The sanitized build, whose instrumented templates cost most, compiles all
 # files in batches, and so does CI (RELIEF_UNITY=ALL), which starts from nothing. With RELIEF_UNITY=OFF each file is
-# compiled alone, as in the debug preset.
+# compiled alone, as in the debug preset. Batches dictate no names: the files of a batch that does not compile are
+# compiled alone (compile-batch).
 option(RELIEF_PCH "Precompile the headers that nearly every file includes" ON)
 set(RELIEF_UNITY ON CACHE STRING "Compile in batches: ON: tests, and all files under sanitizers; ALL: all files; OFF")
 set(RELIEF_PCH_HEADER ${CMAKE_CURRENT_LIST_DIR}/precompiled.h)
@@ -78,7 +79,12 @@ function(relief_batch target size)
     set(tests ${PROJECT_SOURCE_DIR}/tests)
     cmake_path(IS_PREFIX tests ${CMAKE_CURRENT_SOURCE_DIR} in_tests)
     if(RELIEF_UNITY AND (RELIEF_UNITY STREQUAL ALL OR RELIEF_SANITIZE OR in_tests))
-        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${size})
+        set_target_properties(
+            ${target}
+            PROPERTIES UNITY_BUILD ON
+                       UNITY_BUILD_BATCH_SIZE ${size}
+                       CXX_COMPILER_LAUNCHER
+                       "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/compile-batch;${CMAKE_CXX_COMPILER_LAUNCHER}")
         # GCC warns of types with members from anonymous namespaces unless they stand in the main file.
         target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
     endif()
