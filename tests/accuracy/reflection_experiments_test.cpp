@@ -50,6 +50,7 @@ double left_of_slope(double roughness) {
     return above / below;
 }
 
+TEST_LABELS(not_sanitized);
 TEST(TrueMirror, MatchesTheReferenceShader) {
     const Scene ball = mirror_ball(cube_map_of(waves_and_lights, 512), 0.0);
     const Image traced = supersampled_reference(ball, cube_side, 4);

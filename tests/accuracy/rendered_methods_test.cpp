@@ -16,6 +16,7 @@
 #include "relief/mesh/mesh.h"
 #include "shading_experiments.h"
 #include "support/gl_environment.h"
+#include "support/labels.h"
 
 namespace relief {
 using namespace relief::accuracy;
@@ -156,6 +157,7 @@ TEST(ManySamples, OfASphereMatchTheClosedForm) {
     EXPECT_GT(brightest, 0.6) << "the highlight is in the picture";
 }
 
+TEST_LABELS(not_sanitized);
 TEST(ManySamples, CoverTheAreaOfADisc) {
     constexpr int size = 24;
     constexpr double distance = 4.0;

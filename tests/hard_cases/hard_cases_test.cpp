@@ -16,6 +16,7 @@
 #include "relief/mesh/mesh.h"
 #include "support/invariants.h"
 #include "support/labels.h"
+#include "support/sanitized.h"
 
 namespace relief::test {
 namespace {
@@ -59,7 +60,7 @@ TEST(HardCasesTable, HasARowForEveryWordOfCheck) {
             << condition.word;
 }
 
-constexpr std::uint32_t mesh_count = 10000;
+constexpr std::uint32_t mesh_count = is_sanitized ? 2000 : 10000;
 
 class HostileMeshes : public testing::TestWithParam<NamedTangentMethod> {};
 

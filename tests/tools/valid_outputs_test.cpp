@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "support/labels.h"
+#include "support/sanitized.h"
 #include "support/shared_data.h"
 #include "tools/workplace.h"
 
@@ -124,8 +125,11 @@ TEST_F(ValidOutputs, FromBrokenAndHostileModels) {
         for (fs::path& file : models_below(folder))
             models.push_back(std::move(file));
     }
-    run_all(models);
-    EXPECT_GT(written_, 50);
+    if (test::is_sanitized)
+        run_one_each(models);
+    else
+        run_all(models);
+    EXPECT_GT(written_, test::is_sanitized ? 0 : 50);
 }
 
 TEST_LABELS(slow);

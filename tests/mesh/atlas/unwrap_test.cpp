@@ -20,6 +20,7 @@
 #include "support/hard_meshes.h"
 #include "support/invariants.h"
 #include "support/labels.h"
+#include "support/sanitized.h"
 #include "support/shapes.h"
 
 namespace relief {
@@ -217,11 +218,11 @@ Mesh dented_plate(std::uint32_t side) {
 
 // Parts of charts that could not be flattened become parts of their neighbors.
 TEST(Unwrap, MergesSmallCharts) {
-    const Unwrapped unwrapped = unwrap(dented_plate(140));
+    const Unwrapped unwrapped = unwrap(dented_plate(84));
     EXPECT_EQ(broken_promise(unwrapped), "");
     EXPECT_LE(unwrapped.stats.charts, 40U);
     EXPECT_LE(unwrapped.stats.small_charts, 2U);
-    EXPECT_LT(unwrapped.stats.stretch, 1.02);
+    EXPECT_LT(unwrapped.stats.stretch, 1.03);
 }
 
 // The right angles of a texture must not become left ones: bakers and tangent spaces depend on it.
@@ -527,7 +528,7 @@ TEST(Unwrap, RefusesOptionsOutOfRange) {
 
 TEST(Unwrap, HasAResultForEveryMesh) {
     std::vector<test::NamedMesh> meshes = test::hard_meshes();
-    for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    for (std::uint32_t seed = 0; seed < (test::is_sanitized ? 20 : 60); ++seed) {
         meshes.push_back({"random " + std::to_string(seed), test::random_mesh(seed)});
         meshes.push_back({"hostile " + std::to_string(seed), test::hostile_mesh(seed)});
     }
@@ -608,13 +609,13 @@ TEST(Unwrap, HandlesHardTopology) {
     const Unwrapped strip = unwrap(moebius(200), options);
     EXPECT_EQ(broken_promise(strip), "");
     EXPECT_LE(strip.stats.charts, 8U);
-    EXPECT_EQ(broken_promise(unwrap(test::fan(2000), options)), "");
+    EXPECT_EQ(broken_promise(unwrap(test::fan(1000), options)), "");
     Report report;
     EXPECT_EQ(broken_promise(unwrap(book(500), options, report)), "");
     EXPECT_EQ(report.count("edge of more than two triangles, or of two in one direction"), 1U);
-    const Unwrapped thin = unwrap(slivers(2000, 1e-4F), options);
+    const Unwrapped thin = unwrap(slivers(1000, 1e-4F), options);
     EXPECT_EQ(broken_promise(thin), "");
-    EXPECT_EQ(thin.stats.charts, 2000U);
+    EXPECT_EQ(thin.stats.charts, 1000U);
 }
 
 // A surface that covers itself twice is divided, and so is one whose flat image would overlap.

@@ -16,6 +16,7 @@
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 
 namespace relief {
 namespace {
@@ -136,6 +137,7 @@ TEST(BakeCheck, QuantizationIsTheErrorOfRounding) {
     EXPECT_NEAR(all_shares(check), 1.0, 1e-9);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(BakeCheck, SamplingIsTheErrorOfOneSample) {
     // A texel has a width of one sixteenth. The waves are three times shorter, so one sample cannot
     // resolve them.

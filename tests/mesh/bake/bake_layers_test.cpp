@@ -17,6 +17,7 @@
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 
 namespace relief {
 using namespace relief::detail;
@@ -340,6 +341,7 @@ TEST(Occlusion, SamplesDivideTheRaysOfATexel) {
     EXPECT_LT(error_of(means, 0.5).root_mean_square, 0.009);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(Occlusion, InABowlIsTheOpenFractionOfTheSphere) {
     // The inner side of a sphere, cut off above y = 0 and above y = 0.5.
     for (const int kept : {32, 48}) {

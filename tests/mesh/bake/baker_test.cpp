@@ -519,7 +519,7 @@ std::vector<Model> models() {
 BakedImage baked(const Mesh& high, const Model& model, std::size_t map_count = 1) {
     BakeOptions options = sized(model.side, model.side);
     options.map.samples = 4;
-    options.map.layers.occlusion = OcclusionOptions{.rays = 16, .distance = {}};
+    options.map.layers.occlusion = OcclusionOptions{.rays = 8, .distance = {}};
     options.map.layers.curvature = true;
     options.map.layers.positions = true;
     options.map.layers.colors = true;

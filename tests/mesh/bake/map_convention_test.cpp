@@ -32,8 +32,8 @@ namespace {
 
 using test::sized;
 
-constexpr int map_width = 128;
-constexpr int map_height = 128;
+constexpr int map_width = 96;
+constexpr int map_height = 96;
 
 /// A torus with a nonuniform image that is mirrored on its right half.
 Mesh torus(int slices, int sides) {
@@ -78,7 +78,7 @@ struct Pair {
     Mesh high, low;
     Pair() {
         Report report;
-        high = bumpy(make_torus(0.4F, 400, 200), 9.0);
+        high = bumpy(make_torus(0.4F, 200, 100), 9.0);
         low = with_frames(torus(24, 12), {.tangents = TangentMethod::mikktspace}, report).mesh;
     }
 };

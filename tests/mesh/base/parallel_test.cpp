@@ -542,7 +542,7 @@ std::set<std::size_t> sampled_pieces(std::size_t count) {
 #if defined(__SANITIZE_THREAD__)
     constexpr std::size_t max_pieces = 3;
 #elif defined(__SANITIZE_ADDRESS__)
-    constexpr std::size_t max_pieces = 8;
+    constexpr std::size_t max_pieces = 4;
 #else
     constexpr std::size_t max_pieces = 12;
 #endif

@@ -16,6 +16,7 @@
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"
 #include "support/images.h"
+#include "support/labels.h"
 
 namespace relief {
 using namespace relief::accuracy;
@@ -429,6 +430,7 @@ struct WaveErrors {
     double long_wave, short_wave, long_8_bit, long_16_bit;
 };
 
+TEST_LABELS(not_sanitized);
 TEST(BumpAccuracy, TheErrorsOnWavesAreTheKnownOnes) {
     // RMS errors in degrees for wavelengths 32 and 8 in float, and 256 in 8 and 16 bits. The values
     // come from a separate study without this code, except those of prewitt3 and scharr5.

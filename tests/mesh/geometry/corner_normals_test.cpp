@@ -14,6 +14,7 @@
 #include "relief/mesh/report.h"
 #include "support/hard_meshes.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 
 namespace relief {
@@ -200,6 +201,7 @@ TEST(CornerNormals, OrderOfTrianglesAndCornersChangesNoBit) {
     }
 }
 
+TEST_LABELS(not_sanitized);
 TEST(CornerNormals, EdgeOfAHundredThousandTrianglesIsFast) {
     // All triangles share one edge. A comparison of every pair would take 5e9 steps.
     Mesh book;

@@ -140,6 +140,7 @@ constexpr std::array expected_errors = {
     Expected{angle16, best, 0.00122, 0.00244, 0.00078, 0.00243},
 };
 
+TEST_LABELS(not_sanitized);
 TEST(FrameEncoding, HasTheStatedErrorAndKeepsHandedness) {
     const ReferenceFrames reference = random_frames(100000);
     for (const Expected& expected : expected_errors) {

@@ -15,6 +15,7 @@
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 
 namespace relief {
@@ -340,6 +341,7 @@ std::clock_t clocks_of_crowd(std::size_t triangles) {
     return least;
 }
 
+TEST_LABELS(not_sanitized);
 TEST(Compare, CrowdsDoNotTakeQuadraticTime) {
     const std::clock_t few = clocks_of_crowd(2000);
     // 8 times as many take 8 times as long if the time is linear, and 64 times if it is quadratic.

@@ -124,7 +124,7 @@ TEST(SurfaceDistance, FindsTheNearestOfManyThinTriangles) {
     };
     Mesh all;
     std::vector<Mesh> needles;
-    for (std::uint32_t i = 0; i < 60; ++i) {
+    for (std::uint32_t i = 0; i < 30; ++i) {
         const glm::vec3 end = point();
         needles.push_back(triangle(end, point(), end + glm::vec3(0.01F, 0.0F, 0.005F)));
         const std::vector<glm::vec3>& corners = needles.back().positions;
@@ -160,7 +160,7 @@ Mesh crossing_needles(std::uint32_t count) {
 
 TEST(SurfaceDistance, CrossingNeedlesAreDividedWithTheSameDistances) {
     constexpr std::size_t part = 50;  // So few are not divided.
-    const Mesh all = crossing_needles(2000);
+    const Mesh all = crossing_needles(1000);
     for (const glm::vec3& p : {glm::vec3(0.3F, 0.6F, 0.4F), glm::vec3(1.2F, 0.1F, 0.9F)}) {
         const Mesh dot = triangle(p, p + glm::vec3(1e-4F, 0, 0), p + glm::vec3(0, 1e-4F, 0));
         double nearest = std::numeric_limits<double>::infinity();

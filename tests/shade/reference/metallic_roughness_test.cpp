@@ -12,6 +12,7 @@
 #include "environment/convolution.h"
 #include "reference/reference_parts.h"
 #include "shade/reference/traced.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 
 namespace relief {
@@ -685,6 +686,7 @@ std::vector<DirectionalLight> even_lights_of_facets(const AnisotropicFacets& fac
 /// over views, white facets reflect 98% to 102% of even light. From a single view it is 91% to
 /// 105%; least at grazing angles across the grooves of a strength of 1. Without compensation, or
 /// with that of the smooth axis, it is down to 53%.
+TEST_LABELS(not_sanitized);
 TEST(MetallicRoughness, KeepsEvenLightAtEveryAnisotropy) {
     Scene scene = test::scene_of(test::facing_square(), {});
     double least = 2.0;

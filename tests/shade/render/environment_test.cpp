@@ -12,6 +12,7 @@
 #include "relief/shade/image_compare.h"
 #include "shade/environment/test_environments.h"
 #include "shade/render/draw_support.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 
@@ -283,6 +284,7 @@ Image scaled(Image image, float factor) {
     return image;
 }
 
+TEST_LABELS(not_sanitized);
 TEST_F(Environments, KeepTheEnergyOfASun) {
     const Image panorama = sunny_panorama(1e6F);
     Image square = make_image(32, 32, 3, 32, ColorSpace::linear);

@@ -75,7 +75,7 @@ inline void expect_agreement(const shade::Context& context, const shade::Scene& 
 }
 
 /// The width and height of compared pictures.
-inline constexpr int reference_size = 48;
+inline constexpr int reference_size = 32;
 
 class AgainstReference : public DrawTest {
   protected:
