@@ -79,12 +79,12 @@ function(relief_batch target size)
     set(tests ${PROJECT_SOURCE_DIR}/tests)
     cmake_path(IS_PREFIX tests ${CMAKE_CURRENT_SOURCE_DIR} in_tests)
     if(RELIEF_UNITY AND (RELIEF_UNITY STREQUAL ALL OR RELIEF_SANITIZE OR in_tests))
+        set(launcher ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/compile-batch ${CMAKE_CXX_COMPILER_LAUNCHER})
         set_target_properties(
             ${target}
             PROPERTIES UNITY_BUILD ON
                        UNITY_BUILD_BATCH_SIZE ${size}
-                       CXX_COMPILER_LAUNCHER
-                       "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/compile-batch;${CMAKE_CXX_COMPILER_LAUNCHER}")
+                       CXX_COMPILER_LAUNCHER "${launcher}")
         # GCC warns of types with members from anonymous namespaces unless they stand in the main file.
         target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
     endif()
