@@ -25,6 +25,21 @@ TEST(ShaderPanel, NumbersLinesInAColumn) {
     EXPECT_EQ(numbered_lines(""), "");
 }
 
+TEST(EffectsPanel, ForcesOneEffectAndKeepsTheOthers) {
+    EffectRequest requests = with_forced_choice({}, "shadow", 1);
+    requests = with_forced_choice(requests, "sheen", 2);
+    EXPECT_EQ(forced_choice(requests, "shadow"), 1);
+    EXPECT_EQ(forced_choice(requests, "sheen"), 2);
+    EXPECT_EQ(forced_choice(requests, "clearcoat"), 0);
+    requests = with_forced_choice(requests, "shadow", 2);
+    EXPECT_EQ(forced_choice(requests, "shadow"), 2);
+    EXPECT_EQ(forced_choice(requests, "sheen"), 2);
+    requests = with_forced_choice(requests, "shadow", 0);
+    ASSERT_EQ(requests.forced.size(), 1U) << "an automatic effect has no entry";
+    EXPECT_EQ(requests.forced[0].name, "sheen");
+    EXPECT_FALSE(requests.forced[0].on);
+}
+
 class EffectTimesTest : public testing::Test {
   protected:
     void SetUp() override {

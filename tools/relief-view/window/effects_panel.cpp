@@ -28,6 +28,19 @@ std::string numbered_lines(const std::string& source) {
     return text;
 }
 
+int forced_choice(const EffectRequest& requests, const std::string& name) {
+    for (const ForcedEffect& effect : requests.forced) {
+        if (effect.name == name) return effect.on ? 1 : 2;
+    }
+    return 0;
+}
+
+EffectRequest with_forced_choice(EffectRequest requests, const std::string& name, int choice) {
+    std::erase_if(requests.forced, [&](const ForcedEffect& effect) { return effect.name == name; });
+    if (choice != 0) requests.forced.push_back({name, choice == 1});
+    return requests;
+}
+
 void ShaderPanel::assemble(const FramePlan& plan) {
     programs_.clear();
     error_.clear();
@@ -75,25 +88,12 @@ void ShaderPanel::draw(const std::shared_ptr<const FramePlan>& plan) {
 
 namespace {
 
-/// 0: automatic, 1: forced on, 2: forced off.
-int forced(const EffectRequest& requests, const std::string& name) {
-    for (const ForcedEffect& effect : requests.forced) {
-        if (effect.name == name) return effect.on ? 1 : 2;
-    }
-    return 0;
-}
-
 void draw_switch(ViewerState& state, const std::string& name) {
-    int choice = forced(state.effects(), name);
+    int choice = forced_choice(state.effects(), name);
     ImGui::PushID(name.c_str());
     ImGui::SetNextItemWidth(4.5F * ImGui::GetFontSize());
-    if (ImGui::Combo("##forced", &choice, "auto\0on\0off\0")) {
-        EffectRequest requests = state.effects();
-        std::erase_if(requests.forced,
-                      [&](const ForcedEffect& effect) { return effect.name == name; });
-        if (choice != 0) requests.forced.push_back({name, choice == 1});
-        state.set_effects(std::move(requests));
-    }
+    if (ImGui::Combo("##forced", &choice, "auto\0on\0off\0"))
+        state.set_effects(with_forced_choice(state.effects(), name, choice));
     probe_item("force " + name);
     ImGui::PopID();
 }

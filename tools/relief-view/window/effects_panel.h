@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The shader source in the effects panel. Tests: tests/tools/window/effects_panel_test.cpp.
+/// The choices and the shader source in the effects panel. Tests:
+/// tests/tools/window/effects_panel_test.cpp.
 #pragma once
 
 #include <memory>
@@ -13,6 +14,13 @@ namespace relief::tools {
 
 /// Adds line numbers: " 1  #version 330 core".
 std::string numbered_lines(const std::string& source);
+
+/// The choice for an effect. 0: automatic, 1: forced on, 2: forced off.
+int forced_choice(const shade::EffectRequest& requests, const std::string& name);
+
+/// The requests with this choice for one effect.
+shade::EffectRequest with_forced_choice(shade::EffectRequest requests, const std::string& name,
+                                        int choice);
 
 /// The shader source of each program, assembled once per plan.
 class ShaderPanel {
