@@ -60,7 +60,7 @@ module read and write EXR, HDR, TIFF and other images with OpenImageIO.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME librelief-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libglm-dev, libfmt-dev, libtbb-dev, libopenmesh-dev, libtinyobjloader-dev, \
+    "libglm-dev, libfmt-dev, libtbb-dev, libtinyobjloader-dev, \
 libmeshoptimizer-dev, libdraco-dev, libdeflate-dev, libisal-dev, libturbojpeg0-dev, libzstd-dev, libembree-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "relief-image-formats (= ${version})")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION

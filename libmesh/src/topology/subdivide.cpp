@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loop subdivision, level by level.
 //
-// The rules of [Loop 1987] apply to the manifold surface of the mesh (topology.h), as half-edges of
-// OpenMesh: inner vertices by their valence, boundaries as cubic splines. They are computed here,
-// because OpenMesh's own subdivider walks around a vertex once for each of its edges. The triangles
-// of the mesh determine texture coordinates and colors. Positions stay in double precision,
+// The rules of [Loop 1987] apply to the manifold surface of the mesh (topology.h): inner vertices
+// by their valence, boundaries as cubic splines. The triangles of the mesh determine texture
+// coordinates and colors. Positions stay in double precision,
 // relative to the center of the mesh, until the last level.
 #include "relief/mesh/topology.h"
 
 #include <fmt/format.h>
 
-#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -36,135 +34,91 @@ struct LoopPoints {
     std::vector<glm::dvec3> on_edges;     ///< One per corner: on the edge to the next corner.
 };
 
-// The surface as an OpenMesh mesh. Half-edges are linked one by one instead of face by face,
-// because OpenMesh's add_face refuses some orders of faces and prints to stderr. Vertices and faces
-// keep their indices. The time is linear.
+/// Returns a corner at each vertex: the one at which its outgoing boundary edge begins, or for an
+/// inner vertex its last one. Every vertex of a topology has triangles.
+std::vector<Corner> corners_at_vertices(const Topology& topology, std::size_t vertex_count) {
+    std::vector<Corner> result(vertex_count, no_corner);
+    for (Corner corner = 0; corner < topology.opposite.size(); ++corner) {
+        check_cancelled(corner);
+        Corner& known = result[vertex_of(corner, topology.triangles)];
+        if (known == no_corner || topology.opposite[known] != no_corner) known = corner;
+    }
+    return result;
+}
 
-struct SurfaceTraits : OpenMesh::DefaultTraits {
-    using Point = OpenMesh::Vec3d;
-    using Normal = OpenMesh::Vec3d;
+/// The points of a topology, by corner.
+class CornerPoints {
+  public:
+    /// \param points  one per vertex of the topology
+    CornerPoints(const Topology& topology, std::span<const glm::dvec3> points)
+        : topology_(topology), points_(points) {}
+
+    /// Returns the corner beyond the edge from a corner to the next one, or no_corner.
+    [[nodiscard]] Corner opposite(Corner corner) const { return topology_.opposite[corner]; }
+    [[nodiscard]] const glm::dvec3& at(Corner corner) const {
+        return points_[vertex_of(corner, topology_.triangles)];
+    }
+    [[nodiscard]] const glm::dvec3& after(Corner corner) const {
+        return at(next_in_triangle(corner));
+    }
+    [[nodiscard]] const glm::dvec3& before(Corner corner) const {
+        return at(previous_in_triangle(corner));
+    }
+
+  private:
+    const Topology& topology_;
+    std::span<const glm::dvec3> points_;
 };
-using SurfaceMesh = OpenMesh::TriMesh_ArrayKernelT<SurfaceTraits>;
-using Halfedge = SurfaceMesh::HalfedgeHandle;
-using Vertex = SurfaceMesh::VertexHandle;
 
-Vertex vertex_at(const Topology& topology, Corner corner) {
-    return Vertex(static_cast<int>(vertex_of(corner, topology.triangles)));
-}
-
-/// Creates one edge for each pair of opposite corners, and for each corner at a boundary.
-std::vector<Halfedge> add_edges(SurfaceMesh& mesh, const Topology& topology) {
-    std::vector<Halfedge> halfedges(topology.opposite.size());
-    for (Corner corner = 0; corner < halfedges.size(); ++corner) {
-        check_cancelled(corner);
-        const Corner beyond = topology.opposite[corner];
-        if (beyond != no_corner && beyond < corner) continue;
-        halfedges[corner] = mesh.new_edge(vertex_at(topology, corner),
-                                          vertex_at(topology, next_in_triangle(corner)));
-        if (beyond != no_corner)
-            halfedges[beyond] = mesh.opposite_halfedge_handle(halfedges[corner]);
+/// The rule for vertices. \param first  one of corners_at_vertices()
+glm::dvec3 moved_vertex(const CornerPoints& points, Corner first) {
+    const glm::dvec3& point = points.at(first);
+    if (points.opposite(first) == no_corner) {
+        // The edge that arrives is the first one without a neighbor, counter-clockwise.
+        Corner arriving = previous_in_triangle(first);
+        while (points.opposite(arriving) != no_corner)
+            arriving = previous_in_triangle(points.opposite(arriving));
+        return (point * 6.0 + points.at(arriving) + points.after(first)) * 0.125;
     }
-    return halfedges;
-}
-
-void add_faces(SurfaceMesh& mesh, const Topology& topology,
-               const std::vector<Halfedge>& halfedges) {
-    for (std::size_t t = 0; t < topology.triangles.size(); ++t) {
-        check_cancelled(t);
-        const SurfaceMesh::FaceHandle face = mesh.new_face();
-        const auto first = static_cast<Corner>(3 * t);
-        mesh.set_halfedge_handle(face, halfedges[first]);
-        for (Corner corner = first; corner < first + 3; ++corner) {
-            mesh.set_face_handle(halfedges[corner], face);
-            mesh.set_next_halfedge_handle(halfedges[corner], halfedges[next_in_triangle(corner)]);
-            mesh.set_halfedge_handle(vertex_at(topology, corner), halfedges[corner]);
-        }
-    }
-}
-
-/// Links the outer sides of boundary edges around each hole. The outgoing half-edge of a boundary
-/// vertex is its boundary half-edge, as OpenMesh requires.
-void link_boundaries(SurfaceMesh& mesh, const Topology& topology,
-                     const std::vector<Halfedge>& halfedges) {
-    for (Corner corner = 0; corner < halfedges.size(); ++corner) {
-        check_cancelled(corner);
-        if (topology.opposite[corner] != no_corner) continue;
-        // Walks around the vertex at which the outer side arrives, to the edge where its fan ends.
-        Corner arriving = previous_in_triangle(corner);
-        while (topology.opposite[arriving] != no_corner)
-            arriving = previous_in_triangle(topology.opposite[arriving]);
-        const Halfedge next = mesh.opposite_halfedge_handle(halfedges[arriving]);
-        mesh.set_next_halfedge_handle(mesh.opposite_halfedge_handle(halfedges[corner]), next);
-        mesh.set_halfedge_handle(vertex_at(topology, corner), next);
-    }
-}
-
-/// \param points  one point per vertex of the topology
-/// \return the half-edge from each corner to the next
-std::vector<Halfedge> build(SurfaceMesh& mesh, const Topology& topology,
-                            std::span<const glm::dvec3> points) {
-    mesh.reserve(points.size(), 3 * topology.triangles.size() / 2 + 1, topology.triangles.size());
-    for (const glm::dvec3& point : points)
-        mesh.new_vertex({point.x, point.y, point.z});
-    std::vector<Halfedge> halfedges = add_edges(mesh, topology);
-    add_faces(mesh, topology, halfedges);
-    link_boundaries(mesh, topology, halfedges);
-    return halfedges;
-}
-
-/// The rule for vertices. Every vertex of a topology has triangles.
-OpenMesh::Vec3d moved_vertex(const SurfaceMesh& mesh, SurfaceMesh::VertexHandle vertex) {
-    const OpenMesh::Vec3d& point = mesh.point(vertex);
-    if (mesh.is_boundary(vertex)) {
-        const Halfedge next = mesh.halfedge_handle(vertex);
-        const Halfedge previous = mesh.prev_halfedge_handle(next);
-        return (point * 6.0 + mesh.point(mesh.to_vertex_handle(next)) +
-                mesh.point(mesh.from_vertex_handle(previous))) *
-               0.125;
-    }
-    OpenMesh::Vec3d sum(0.0, 0.0, 0.0);
+    glm::dvec3 sum(0.0);
     int valence = 0;
-    for (const auto& neighbor : mesh.vv_range(vertex)) {
+    Corner corner = first;
+    do {  // Clockwise.
         ++valence;
-        sum += mesh.point(neighbor);
-    }
+        sum += points.after(corner);
+        corner = next_in_triangle(points.opposite(corner));
+    } while (corner != first);
     const double part = 1.0 / valence;
     const double t = 3.0 + 2.0 * portable::cos(2.0 * std::numbers::pi * part);
     const double alpha = (40.0 - t * t) / 64.0;
     return sum * (part * alpha) + point * (1.0 - alpha);
 }
 
-/// The rule for edges.
-OpenMesh::Vec3d middle_of_edge(const SurfaceMesh& mesh, SurfaceMesh::EdgeHandle edge) {
-    const Halfedge one = mesh.halfedge_handle(edge, 0);
-    const Halfedge other = mesh.halfedge_handle(edge, 1);
-    const OpenMesh::Vec3d ends =
-        mesh.point(mesh.to_vertex_handle(one)) + mesh.point(mesh.to_vertex_handle(other));
-    if (mesh.is_boundary(edge)) return ends * 0.5;
-    const auto across = [&](Halfedge side) {
-        return mesh.point(mesh.to_vertex_handle(mesh.next_halfedge_handle(side)));
-    };
-    return (ends * 3.0 + across(one) + across(other)) * 0.125;
+/// The rule for the edge from a corner to the next one.
+glm::dvec3 middle_of_edge(const CornerPoints& points, Corner corner) {
+    const glm::dvec3 ends = points.at(corner) + points.after(corner);
+    const Corner beyond = points.opposite(corner);
+    if (beyond == no_corner) return ends * 0.5;
+    return (ends * 3.0 + points.before(corner) + points.before(beyond)) * 0.125;
 }
 
 /// \param points  one per vertex of the topology
 LoopPoints loop_points(const Topology& topology, std::span<const glm::dvec3> points) {
-    SurfaceMesh mesh;
-    const std::vector<Halfedge> halfedges = build(mesh, topology, points);
-    const auto plain = [](const OpenMesh::Vec3d& p) { return glm::dvec3(p[0], p[1], p[2]); };
+    const CornerPoints corner_points(topology, points);
     LoopPoints result;
-    for (const auto& vertex : mesh.vertices()) {
+    result.at_vertices.reserve(points.size());
+    for (const Corner corner : corners_at_vertices(topology, points.size())) {
         check_cancelled(result.at_vertices.size());
-        result.at_vertices.push_back(plain(moved_vertex(mesh, vertex)));
+        result.at_vertices.push_back(moved_vertex(corner_points, corner));
     }
-    std::vector<glm::dvec3> middles;
-    for (const auto& edge : mesh.edges()) {
-        check_cancelled(middles.size());
-        middles.push_back(plain(middle_of_edge(mesh, edge)));
+    result.on_edges.resize(topology.opposite.size());
+    for (Corner corner = 0; corner < topology.opposite.size(); ++corner) {
+        check_cancelled(corner);
+        const Corner beyond = topology.opposite[corner];
+        // Both corners of an edge have the bits of the smaller one.
+        result.on_edges[corner] =
+            beyond < corner ? result.on_edges[beyond] : middle_of_edge(corner_points, corner);
     }
-    for (const Halfedge halfedge : halfedges)
-        result.on_edges.push_back(
-            middles[static_cast<std::size_t>(mesh.edge_handle(halfedge).idx())]);
     return result;
 }
 

@@ -138,7 +138,7 @@ SurfaceDistance surface_distance(const Mesh& a, const Mesh& b);
 /// of their own vertices. Surfaces that meet at a non-manifold edge or vertex are smoothed
 /// separately and joined at the mean of their results. The same input gives the same bits.
 ///
-/// Source: [Loop 1987]; OpenMesh's subdivider.
+/// Source: [Loop 1987].
 Mesh subdivided(const Mesh& mesh, int levels, const FrameOptions& frames,
                 Report& report = IgnoredReport());
 
