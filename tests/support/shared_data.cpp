@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/shared_data.h"
 
-#include <unistd.h>
-
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <stdexcept>
+#include <random>
 #include <string>
 
 namespace relief::test {
@@ -27,9 +25,11 @@ std::string read_bytes(const std::filesystem::path& file) {
 
 // The name is unique, even if a killed test left its folder behind.
 TemporaryDirectory::TemporaryDirectory() {
-    std::string name = (std::filesystem::temp_directory_path() / "relief-test-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
-    path_ = name;
+    std::random_device random;
+    do {
+        path_ =
+            std::filesystem::temp_directory_path() / ("relief-test-" + std::to_string(random()));
+    } while (!std::filesystem::create_directory(path_));
 }
 
 TemporaryDirectory::~TemporaryDirectory() {

@@ -23,6 +23,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler.h"
 #include "geometry/check_triangles.h"
 #include "parallel.h"
 #include "relief/mesh/report.h"
@@ -33,7 +34,7 @@ using namespace relief::detail;
 namespace {
 
 /// Integers that hold sums of products of two fixed-point coordinates.
-__extension__ using Wide = __int128;
+using Wide = Integer128;
 
 /// The fixed-point unit: 2^bits per texel.
 struct TexelScale {

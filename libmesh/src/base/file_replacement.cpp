@@ -5,24 +5,18 @@
 // Tests: tests/mesh/base/file_replacement_test.cpp, tests/tools/file_faults_test.cpp.
 #include "file_replacement.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
-#include <sys/random.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "operating_system.h"
 #include "relief/mesh/report.h"
 
 namespace relief::detail {
@@ -31,38 +25,26 @@ constinit thread_local FileSet* current_file_set = nullptr;
 
 namespace {
 
-constexpr int ending_signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU};
-
 std::atomic<int> delay_count = 0;
 std::atomic<bool> is_ending = false;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
 std::atomic<std::size_t> replaced_count = 0;
 
-sigset_t all_ending_signals() {
-    sigset_t all;
-    ::sigemptyset(&all);
-    for (const int signal : ending_signals)
-        ::sigaddset(&all, signal);
-    return all;
-}
-
 }  // namespace
 
-SignalDelay::SignalDelay() {
-    const sigset_t all = all_ending_signals();
-    ::pthread_sigmask(SIG_BLOCK, &all, &before_);
+SignalDelay::SignalDelay() : before_(block_ending_signals()) {
     ++delay_count;
     if (!is_ending) return;
     // The handler runs in another thread and ends the program.
     --delay_count;
     for (;;)
-        ::pause();
+        sleep_one_millisecond();
 }
 
 SignalDelay::~SignalDelay() {
     --delay_count;
-    ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+    restore_signals(before_);
 }
 
 namespace {
@@ -95,39 +77,11 @@ std::filesystem::path identity_of(const std::filesystem::path& target) {
 /// Returns a random name in the folder of the target, with its extension.
 std::filesystem::path random_name_beside(const std::filesystem::path& target) {
     constexpr std::size_t max_extension = 16;
-    std::string extension = target.extension().string();
-    if (extension.size() > max_extension) extension.clear();
-    std::uint64_t number = 0;
-    while (::getrandom(&number, sizeof number, 0) < 0 && errno == EINTR) {
-    }
-    return std::filesystem::path(target).replace_filename(
-        fmt::format(".relief-{:016x}{}", number, extension));
-}
-
-/// Creates an empty file; an existing file or a link is never opened. \return its descriptor
-int create_exclusively(const std::filesystem::path& file) {
-    constexpr ::mode_t everybody = 0666;  // Reduced by the umask.
-    return ::open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, everybody);
-}
-
-/// Gives the temporary file the mode and the owner of the file that it replaces.
-void copy_mode_and_owner(const std::filesystem::path& from, int to) {
-    struct stat old {};
-    struct stat now {};
-    if (::stat(from.c_str(), &old) != 0 || ::fstat(to, &now) != 0) return;
-    // Only privileged programs may change owners. A change clears the bits that set identifiers.
-    const bool is_same = old.st_uid == now.st_uid && old.st_gid == now.st_gid;
-    const bool changed = !is_same && ::fchown(to, old.st_uid, old.st_gid) == 0;
-    constexpr ::mode_t all_bits = 07777;
-    constexpr ::mode_t permissions = 0777;
-    ::fchmod(to, old.st_mode & (is_same || changed ? all_bits : permissions));
-}
-
-bool is_same_file(const std::filesystem::path& path, int descriptor) {
-    struct stat named {};
-    struct stat opened {};
-    return ::lstat(path.c_str(), &named) == 0 && ::fstat(descriptor, &opened) == 0 &&
-           named.st_dev == opened.st_dev && named.st_ino == opened.st_ino;
+    std::filesystem::path extension = target.extension();
+    if (extension.native().size() > max_extension) extension.clear();
+    return std::filesystem::path(target)
+        .replace_filename(fmt::format(".relief-{:016x}", random_number()))
+        .concat(extension.native());
 }
 
 }  // namespace
@@ -190,32 +144,21 @@ namespace {
 StagedFile* first_staged = nullptr;
 
 /// Protects the list. It is locked within a SignalDelay only.
-constinit std::mutex list_mutex;
+std::mutex list_mutex;
 
-/// The signal handler; it calls only async-signal-safe functions.
-void end_cleanly(int signal) {
-    const int error = errno;
+/// Runs in the signal handler; it calls only async-signal-safe functions.
+void remove_temporaries() {
     is_ending = true;
     while (delay_count > 0)
-        ::poll(nullptr, 0, 1);
+        sleep_one_millisecond();
     for (const StagedFile* file = first_staged; file != nullptr; file = file->next())
-        ::unlink(file->temporary().c_str());
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);  // The signal is blocked here, so it takes effect on return.
-    errno = error;
+        remove_file(file->temporary());
 }
 
 }  // namespace
 
 void remove_temporaries_on_signals() {
-    for (const int signal : ending_signals) {
-        struct sigaction now {};
-        if (::sigaction(signal, nullptr, &now) != 0 || now.sa_handler == SIG_IGN) continue;
-        struct sigaction clean {};
-        clean.sa_handler = end_cleanly;
-        clean.sa_mask = all_ending_signals();
-        ::sigaction(signal, &clean, nullptr);
-    }
+    call_before_end(remove_temporaries);
 }
 
 std::size_t replaced_file_count() {
@@ -259,13 +202,14 @@ StagedFile::StagedFile(std::filesystem::path file) : file_(std::move(file)) {
         int error = 0;
         {
             const SignalDelay delay;
-            descriptor_ = create_exclusively(temporary_);
-            error = errno;
+            const OpenFile created = create_exclusively(temporary_);
+            descriptor_ = created.descriptor;
+            error = created.error;
             if (descriptor_ >= 0) add_to_list();
         }
         if (descriptor_ >= 0) return;
-        if (error != EEXIST)
-            throw FileError(file_, fmt::format("cannot be written: {}", std::strerror(error)));
+        if (!is_name_in_use(error))
+            throw FileError(file_, fmt::format("cannot be written: {}", error_text(error)));
     }
     throw FileError(file_, "cannot be written: no temporary file can be made beside it");
 }
@@ -273,32 +217,29 @@ StagedFile::StagedFile(std::filesystem::path file) : file_(std::move(file)) {
 StagedFile::~StagedFile() {
     if (is_listed_) {
         const SignalDelay delay;
-        if (is_same_file(temporary_, descriptor_)) ::unlink(temporary_.c_str());
+        if (is_same_file(temporary_, descriptor_)) remove_file(temporary_);
         remove_from_list();
     }
-    ::close(descriptor_);
+    close_descriptor(descriptor_);
 }
 
 void StagedFile::complete() {
     copy_mode_and_owner(target_, descriptor_);
-    // Some file systems cannot synchronize, which is no error.
-    if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP)
-        throw FileError(file_, fmt::format("cannot be written: {}", std::strerror(errno)));
+    const int error = synchronize(descriptor_);
+    if (error != 0) throw FileError(file_, fmt::format("cannot be written: {}", error_text(error)));
 }
 
 /// Gives the old file a second name, or on file systems without hard links another name. \return 0
 /// or the error
 int StagedFile::keep_old() noexcept {
-    if (::link(target_.c_str(), old_.c_str()) == 0) {
+    const int link_error = link_file(target_, old_);
+    if (link_error == 0) {
         old_state_ = Old::linked;
         return 0;
     }
-    if (errno == ENOENT) return 0;
-    const int link_error = errno;
-    struct stat facts {};
-    if (::lstat(target_.c_str(), &facts) != 0) return link_error;
-    if (S_ISDIR(facts.st_mode)) return EISDIR;
-    if (::rename(target_.c_str(), old_.c_str()) != 0) return errno;
+    if (is_missing(link_error)) return 0;
+    if (const int error = require_no_folder(target_); error != 0) return error;
+    if (const int error = rename_file(target_, old_); error != 0) return error;
     old_state_ = Old::renamed;
     return 0;
 }
@@ -307,29 +248,27 @@ int StagedFile::replace(bool keeps_old) noexcept {
     if (!is_same_file(temporary_, descriptor_)) return foreign_file;
     int error = keeps_old ? keep_old() : 0;
     if (error != 0) return error;
-    if (::rename(temporary_.c_str(), target_.c_str()) == 0) {
+    error = rename_file(temporary_, target_);
+    if (error == 0) {
         remove_from_list();
         return 0;
     }
-    error = errno;
     // A rename between two names of one file would do nothing.
     if (old_state_ == Old::linked) forget_old();
-    if (old_state_ == Old::renamed && ::rename(old_.c_str(), target_.c_str()) == 0)
-        old_state_ = Old::none;
+    if (old_state_ == Old::renamed && rename_file(old_, target_) == 0) old_state_ = Old::none;
     return error;
 }
 
 void StagedFile::restore() noexcept {
-    const bool is_restored = old_state_ == Old::none ? ::unlink(target_.c_str()) == 0
-                                                     : ::rename(old_.c_str(), target_.c_str()) == 0;
-    if (is_restored)
+    const int error = old_state_ == Old::none ? remove_file(target_) : rename_file(old_, target_);
+    if (error == 0)
         old_state_ = Old::none;
     else
         is_left_new_ = true;
 }
 
 void StagedFile::forget_old() noexcept {
-    if (old_state_ != Old::none) ::unlink(old_.c_str());
+    if (old_state_ != Old::none) remove_file(old_);
     old_state_ = Old::none;
 }
 
@@ -366,7 +305,7 @@ void commit_together(const std::vector<std::shared_ptr<StagedFile>>& files) {
     }
     std::string problem = "cannot be written: ";
     problem += error == StagedFile::foreign_file ? "another program replaced the temporary file"
-                                                 : std::strerror(error);
+                                                 : error_text(error);
     for (const std::shared_ptr<StagedFile>& file : files)
         problem += file->rest_of_failure();
     throw FileError(files[done]->file(), problem);
@@ -388,8 +327,7 @@ const std::filesystem::path& FileReplacement::temporary() const {
 }
 
 std::filesystem::path FileReplacement::written_path() const {
-    std::filesystem::path path = fmt::format("/proc/self/fd/{}", staged_->descriptor());
-    return ::access(path.c_str(), W_OK) == 0 ? path : staged_->temporary();
+    return path_of_descriptor(staged_->descriptor()).value_or(staged_->temporary());
 }
 
 void FileReplacement::commit() {

@@ -10,7 +10,6 @@
 /// leaves a mixture, with the old files under names that begin with ".relief-".
 #pragma once
 
-#include <csignal>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -18,6 +17,7 @@
 #include <span>
 #include <vector>
 
+#include "operating_system.h"
 #include "relief/export.h"
 
 namespace RELIEF_API relief {
@@ -44,7 +44,7 @@ class FileReplacement {
     /// The name of the temporary file.
     [[nodiscard]] const std::filesystem::path& temporary() const;
     /// A path to the temporary file that stays its own if another program replaces the name by a
-    /// link: that of the open descriptor in /proc. Without /proc it is temporary().
+    /// link: that of the open descriptor in /proc. On systems without /proc it is temporary().
     [[nodiscard]] std::filesystem::path written_path() const;
 
     /// Waits until the temporary file is on the disk, and replaces the old file: at once, or with
@@ -103,13 +103,11 @@ class SignalDelay {
     SignalDelay& operator=(const SignalDelay&) = delete;
 
   private:
-#if !defined(_WIN32)
-    sigset_t before_;
-#endif
+    SignalMask before_;
 };
 
-/// Makes SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGXCPU remove all temporary files before they end
-/// the program.
+/// Makes SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGXCPU (on Windows: Ctrl+C, Ctrl+Break and closing
+/// the console) remove all temporary files before they end the program.
 ///
 /// Programs call this once, before they start threads; a library must not handle the signals of its
 /// user. Ignored signals stay ignored.

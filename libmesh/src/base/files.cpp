@@ -3,18 +3,8 @@
 // mapped into memory: a mapped file that becomes shorter would give a signal instead of an error.
 #include "files.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#if defined(_WIN32)
-#ifndef NOMINMAX
-#define NOMINMAX
-#endif
-#include <io.h>
-#include <windows.h>
-#else
-#include <sys/stat.h>
-#include <unistd.h>
-#endif
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
@@ -25,64 +15,13 @@
 
 #include "file_replacement.h"
 #include "large_memory.h"
+#include "operating_system.h"
 #include "parallel.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 
 namespace relief::detail {
 namespace {
-
-#if defined(_WIN32)
-int open_to_read(const std::filesystem::path& file) {
-    return ::_wopen(file.c_str(), _O_RDONLY | _O_BINARY | _O_NOINHERIT);
-}
-
-void close_descriptor(int descriptor) {
-    ::_close(descriptor);
-}
-
-std::uint64_t size_of(int descriptor) {
-    return static_cast<std::uint64_t>(std::max<std::int64_t>(::_filelengthi64(descriptor), 0));
-}
-
-/// Like read_at() below.
-std::int64_t read_at(int descriptor, std::span<std::byte> to, std::uint64_t offset) {
-    OVERLAPPED at{};
-    at.Offset = static_cast<DWORD>(offset);
-    at.OffsetHigh = static_cast<DWORD>(offset >> 32);
-    constexpr std::size_t max_size = std::size_t{1} << 30;
-    DWORD got = 0;
-    const auto handle = reinterpret_cast<HANDLE>(::_get_osfhandle(descriptor));
-    const auto size = static_cast<DWORD>(std::min(to.size(), max_size));
-    if (::ReadFile(handle, to.data(), size, &got, &at) != 0) return got;
-    if (::GetLastError() == ERROR_HANDLE_EOF) return 0;
-    errno = EIO;
-    return -1;
-}
-#else
-int open_to_read(const std::filesystem::path& file) {
-    return ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-}
-
-void close_descriptor(int descriptor) {
-    ::close(descriptor);
-}
-
-std::uint64_t size_of(int descriptor) {
-    struct stat facts {};
-    return ::fstat(descriptor, &facts) == 0 ? static_cast<std::uint64_t>(facts.st_size) : 0;
-}
-
-/// Reads up to so many bytes at an offset. \return their number; 0 at the end of the file; -1 after
-/// an error, with errno
-std::int64_t read_at(int descriptor, std::span<std::byte> to, std::uint64_t offset) {
-    ssize_t got = -1;
-    do {
-        got = ::pread(descriptor, to.data(), to.size(), static_cast<off_t>(offset));
-    } while (got < 0 && errno == EINTR);
-    return got;
-}
-#endif
 
 /// Records that a file is read. \return the file to open \throws FileError if it is missing or a
 /// folder
@@ -130,7 +69,7 @@ FileContents::FileContents(const std::filesystem::path& file) {
     const RandomAccessFile opened(file);
     size_ = static_cast<std::size_t>(opened.size());
     require_memory_for(file, size_);
-    bytes_ = std::make_unique_for_overwrite<char[]>(size_);
+    bytes_.reset(new char[size_]);  // libc++ 14 has no std::make_unique_for_overwrite().
     expect_filling(bytes_.get(), size_);
     ProgressStage stage("reading", size_);
     parallel_for((size_ + piece - 1) / piece, 1, [&](std::size_t first, std::size_t last) {
@@ -143,9 +82,10 @@ FileContents::FileContents(const std::filesystem::path& file) {
 
 RandomAccessFile::RandomAccessFile(std::filesystem::path file) : path_(std::move(file)) {
     const std::filesystem::path opened = note_and_check(path_);
-    descriptor_ = open_to_read(opened);
-    if (descriptor_ < 0)
-        throw FileError(path_, fmt::format("cannot be opened: {}", std::strerror(errno)));
+    const OpenFile result = open_to_read(opened);
+    if (result.error != 0)
+        throw FileError(path_, fmt::format("cannot be opened: {}", error_text(result.error)));
+    descriptor_ = result.descriptor;
     size_ = size_of(descriptor_);
 }
 
@@ -155,14 +95,13 @@ RandomAccessFile::~RandomAccessFile() {
 
 void RandomAccessFile::read(std::uint64_t offset, std::span<std::byte> to) const {
     while (!to.empty()) {
-        const std::int64_t got = read_at(descriptor_, to, offset);
-        if (got <= 0) {
-            throw FileError(path_,
-                            fmt::format("could be read only up to byte {} of {}{}", offset, size_,
-                                        got < 0 ? fmt::format(": {}", std::strerror(errno)) : ""));
+        const auto [got, error] = read_at(descriptor_, to, offset);
+        if (got == 0) {
+            throw FileError(path_, fmt::format("could be read only up to byte {} of {}{}", offset,
+                                               size_, error != 0 ? ": " + error_text(error) : ""));
         }
-        offset += static_cast<std::uint64_t>(got);
-        to = to.subspan(static_cast<std::size_t>(got));
+        offset += got;
+        to = to.subspan(got);
     }
 }
 

@@ -1,25 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The limits of the process, the memory of the machine (the physical memory, or less if a control
-// group of version 2 limits the process), and the budget of a file.
+// The limits of the process and the budget of a file.
 #include "relief/mesh/limits.h"
 
 #include <fmt/format.h>
-#if defined(_WIN32)
-#ifndef NOMINMAX
-#define NOMINMAX
-#endif
-#include <windows.h>
-#else
-#include <unistd.h>
-#endif
 
 #include <algorithm>
 #include <atomic>
-#include <fstream>
 #include <limits>
 
 #include "large_memory.h"
 #include "memory_budget.h"
+#include "operating_system.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -30,25 +21,6 @@ namespace {
 std::atomic<std::uint64_t> memory_limit{0};
 std::atomic<std::uint64_t> pixel_limit{0};
 std::atomic<bool> permits_outside_files{false};
-
-std::uint64_t memory_of_machine() {
-    constexpr std::uint64_t unknown = std::uint64_t{1} << 33;
-#if defined(_WIN32)
-    MEMORYSTATUSEX status{};
-    status.dwLength = sizeof status;
-    return ::GlobalMemoryStatusEx(&status) != 0 ? status.ullTotalPhys : unknown;
-#else
-    const long pages = ::sysconf(_SC_PHYS_PAGES);
-    const long page_size = ::sysconf(_SC_PAGESIZE);
-    std::uint64_t bytes = pages > 0 && page_size > 0 ? static_cast<std::uint64_t>(pages) *
-                                                           static_cast<std::uint64_t>(page_size)
-                                                     : unknown;
-    std::ifstream group("/sys/fs/cgroup/memory.max");
-    std::uint64_t of_group = 0;  // The file has the word "max" if there is no limit.
-    if (group >> of_group) bytes = std::min(bytes, of_group);
-    return bytes;
-#endif
-}
 
 double mebibytes(std::uint64_t bytes) {
     return static_cast<double>(bytes) / (1 << 20);

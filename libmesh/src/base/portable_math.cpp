@@ -156,7 +156,8 @@ namespace relief::detail {
 namespace {
 
 VectorTarget of_processor() {
-#if defined(__x86_64__)
+// GCC for Windows does not align the stack for vectors of 256 bits and more (its bug 54412).
+#if defined(__x86_64__) && !(defined(_WIN32) && !defined(__clang__))
     __builtin_cpu_init();
     const bool wide = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
                       __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");

@@ -3,8 +3,6 @@
 // pass the Progress on to their threads.
 #include "relief/mesh/execution.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
@@ -24,28 +22,6 @@ namespace {
 constinit thread_local bool is_in_piece = false;
 
 }  // namespace
-
-FileStamp stamp_of(const std::filesystem::path& file) {
-#if defined(_WIN32)
-    // The standard library does not tell the number of a file: an existing one has 1.
-    std::error_code error;
-    const auto changed = std::filesystem::last_write_time(file, error);
-    if (error) return {};
-    const std::uintmax_t size = std::filesystem::file_size(file, error);
-    return {static_cast<std::int64_t>(changed.time_since_epoch().count()),
-            error ? 0 : static_cast<std::uint64_t>(size), 1};
-#else
-    struct stat facts {};
-    if (::stat(file.c_str(), &facts) != 0) return {};
-#if defined(__APPLE__)
-    const timespec& changed = facts.st_mtimespec;
-#else
-    const timespec& changed = facts.st_mtim;
-#endif
-    return {static_cast<std::int64_t>(changed.tv_sec) * 1'000'000'000 + changed.tv_nsec,
-            static_cast<std::uint64_t>(facts.st_size), static_cast<std::uint64_t>(facts.st_ino)};
-#endif
-}
 
 Progress::State Progress::state() const {
     const std::lock_guard lock(mutex_);

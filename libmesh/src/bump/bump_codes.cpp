@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "bump/bump_rows.h"
+#include "compiler.h"
 #include "image/normal_coding.h"
 
 namespace relief::detail {
@@ -85,9 +86,6 @@ template <typename Component>
 struct Block {
     alignas(64) std::array<Component, texels_per_block> x, y, z;
 };
-
-template <typename Lane, int bytes>
-using Vector [[gnu::vector_size(bytes)]] = Lane;
 
 /// Selects lane index(i) of the concatenation of two vectors as lane i.
 template <auto index, typename Lanes, int... i>

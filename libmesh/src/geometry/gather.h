@@ -11,6 +11,7 @@
 #include <limits>
 #include <span>
 
+#include "compiler.h"
 #include "portable_math.h"
 #include "relief/mesh/buffers.h"
 
@@ -46,9 +47,9 @@ RELIEF_INLINE std::span<const glm::uvec3> block_of(const TriangleSpan& triangles
 
 // Four numbers in a register of every processor, and four doubles, which the compiler splits on
 // processors with smaller registers.
-using FourFloats = float __attribute__((vector_size(16)));
-using FourInts = std::int32_t __attribute__((vector_size(16)));
-using FourDoubles = double __attribute__((vector_size(32)));
+using FourFloats = Vector<float, 16>;
+using FourInts = Vector<std::int32_t, 16>;
+using FourDoubles = Vector<double, 32>;
 
 /// Transposes a matrix of four rows.
 template <typename Row>

@@ -36,7 +36,7 @@ namespace {
 using Block = std::span<const glm::uvec3>;
 
 // The four doubles of a sum as one operand.
-using Lanes = double __attribute__((vector_size(32), may_alias));
+using Lanes [[gnu::may_alias]] = Vector<double, 32>;
 
 // Rounding.
 

@@ -173,8 +173,8 @@ constexpr double cancelled_tangents = 1e-6;
 // within 84 degrees of each other, and v directions that are not skewed are within 168.
 constexpr float near_cosine_squared = 0.553F;
 
-// Four integers for sums. The compiler splits them on processors with smaller registers.
-using FourLongs = std::int64_t __attribute__((vector_size(32)));
+// Four integers for sums.
+using FourLongs = Vector<std::int64_t, 32>;
 
 /// Plane of a vertex's tangents, or all of space if its normal has no direction.
 class TangentPlane {

@@ -3,8 +3,8 @@
 //
 // The rules of [Loop 1987] apply to the manifold surface of the mesh (topology.h): inner vertices
 // by their valence, boundaries as cubic splines. The triangles of the mesh determine texture
-// coordinates and colors. Positions stay in double precision,
-// relative to the center of the mesh, until the last level.
+// coordinates and colors. Positions stay in double precision, relative to the center of the mesh,
+// until the last level.
 #include "relief/mesh/topology.h"
 
 #include <fmt/format.h>

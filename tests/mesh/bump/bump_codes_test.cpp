@@ -15,6 +15,7 @@
 #include "relief/mesh/enum_names.h"
 #include "relief/mesh/report.h"
 #include "support/images.h"
+#include "support/vector_bits.h"
 
 namespace relief {
 namespace {
@@ -23,17 +24,9 @@ using test::rough;
 
 constexpr std::array register_widths = {"128", "256", "512"};
 
-class RegisterWidth {
-  public:
-    explicit RegisterWidth(const char* bits) { setenv("RELIEF_VECTOR_BITS", bits, 1); }
-    ~RegisterWidth() { unsetenv("RELIEF_VECTOR_BITS"); }
-    RegisterWidth(const RegisterWidth&) = delete;
-    RegisterWidth& operator=(const RegisterWidth&) = delete;
-};
-
 Image map_with(const char* bits, const Image& heights, const BumpOptions& options,
                const NormalMapFormat& format) {
-    const RegisterWidth width(bits);
+    const test::VectorBits width(bits);
     Report report;
     return normal_map_from_height(heights, options, format, report);
 }

@@ -17,6 +17,7 @@
 #include "relief/mesh/report.h"
 #include "support/images.h"
 #include "support/labels.h"
+#include "support/vector_bits.h"
 
 namespace relief {
 using namespace relief::accuracy;
@@ -647,18 +648,17 @@ TEST(BumpBits, AreTheSameForEveryWidthOfRegistersAndNumberOfThreads) {
             for (const Arithmetic arithmetic : {Arithmetic::float64, Arithmetic::float32}) {
                 BumpOptions options = options_of(kernel, {Wrap::mirror, Wrap::clamp}, 5.0);
                 options.arithmetic = arithmetic;
-                setenv("RELIEF_VECTOR_BITS", "128", 1);
+                const test::VectorBits narrow("128");
                 set_thread_limit(1);
                 const Image map = map_of(*image, options, {});
                 const Image normals = normals_from(*image, options);
                 for (const char* bits : {"256", "512"}) {
-                    setenv("RELIEF_VECTOR_BITS", bits, 1);
+                    const test::VectorBits width(bits);
                     set_thread_limit(3);
                     EXPECT_TRUE(map_of(*image, options, {}).samples == map.samples) << bits;
                     EXPECT_TRUE(normals_from(*image, options).samples == normals.samples) << bits;
                 }
                 set_thread_limit(0);
-                unsetenv("RELIEF_VECTOR_BITS");
             }
         }
     }

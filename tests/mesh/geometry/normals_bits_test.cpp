@@ -14,6 +14,7 @@
 #include "support/hard_meshes.h"
 #include "support/invariants.h"
 #include "support/shapes.h"
+#include "support/vector_bits.h"
 
 namespace relief {
 namespace {
@@ -72,13 +73,6 @@ std::vector<glm::vec3> normals_by_definition(const Mesh& mesh, NormalWeight weig
     return normals;
 }
 
-/// Sets the width of vector instructions until the end of the scope.
-class VectorBits {
-  public:
-    explicit VectorBits(const char* bits) { setenv("RELIEF_VECTOR_BITS", bits, 1); }
-    ~VectorBits() { unsetenv("RELIEF_VECTOR_BITS"); }
-};
-
 TEST(VertexNormals, AreTheDefinitionsBitForBit) {
     const Mesh mesh = bumpy_ball();
     for (const NormalWeight weight : all_weights) {
@@ -99,7 +93,7 @@ TEST(VertexNormals, NoInstructionSetChangesABit) {
         for (const Arithmetic arithmetic : {Arithmetic::float64, Arithmetic::float32}) {
             const auto expected = normals_of(mesh, {weight, arithmetic});
             for (const char* bits : {"128", "256"}) {
-                const VectorBits narrower(bits);
+                const test::VectorBits narrower(bits);
                 EXPECT_TRUE(test::same_bits(normals_of(mesh, {weight, arithmetic}), expected))
                     << bits << " bits, weight " << static_cast<int>(weight);
             }

@@ -17,6 +17,7 @@
 #include "support/hard_meshes.h"
 #include "support/invariants.h"
 #include "support/shapes.h"
+#include "support/vector_bits.h"
 
 namespace relief {
 using namespace relief::detail;
@@ -450,9 +451,8 @@ TEST(TangentContributions, AreTheSameBitsWithEverySetOfInstructions) {
     for (const TangentWeight weight : all_tangent_weights) {
         const AllContributions widest = contributions_of(sphere, weight);
         for (const char* bits : {"128", "256"}) {
-            setenv("RELIEF_VECTOR_BITS", bits, 1);
+            const test::VectorBits width(bits);
             const AllContributions narrow = contributions_of(sphere, weight);
-            unsetenv("RELIEF_VECTOR_BITS");
             EXPECT_TRUE(test::same_bits(narrow.corners, widest.corners)) << bits;
         }
     }

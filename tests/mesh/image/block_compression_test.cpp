@@ -18,6 +18,7 @@
 #include "relief/mesh/normal_map.h"
 #include "support/images.h"
 #include "support/invariants.h"
+#include "support/vector_bits.h"
 
 namespace relief {
 namespace {
@@ -406,10 +407,9 @@ TEST(BlockEncoder, TheBytesAreTheSameForAnyThreadsProcessorAndCompiler) {
     constexpr std::uint64_t expected = 13490566594022819295ULL;
     EXPECT_EQ(fingerprint(), expected);
     for (const char* bits : {"128", "256"}) {
-        setenv("RELIEF_VECTOR_BITS", bits, 1);
+        const test::VectorBits width(bits);
         EXPECT_EQ(fingerprint(), expected) << bits;
     }
-    unsetenv("RELIEF_VECTOR_BITS");
     set_thread_limit(1);
     EXPECT_EQ(fingerprint(), expected);
     set_thread_limit(0);
