@@ -135,10 +135,15 @@ function(relief_position_independent target)
     target_compile_options(${target} PRIVATE -fno-semantic-interposition)
 endfunction()
 
+set(RELIEF_FMT fmt::fmt)
+if(RELIEF_FMT_HEADERS)
+    set(RELIEF_FMT $<BUILD_INTERFACE:fmt::fmt-header-only>)
+endif()
+
 # Empty, but for the headers that it lends to libraries.
 add_library(relief_precompiled OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
 relief_position_independent(relief_precompiled)
-target_link_libraries(relief_precompiled PRIVATE relief_flags glm::glm fmt::fmt)
+target_link_libraries(relief_precompiled PRIVATE relief_flags glm::glm ${RELIEF_FMT})
 relief_precompile(relief_precompiled)
 
 # What every test runs under. Half of drawing with software OpenGL is compiling shaders, mostly those of the

@@ -2,12 +2,36 @@
 include(CMakePackageConfigHelpers)
 include(relief-third-parties)
 
+# Parallel loops run on oneTBB's threads, or on those of the standard library in systems without it.
+set(RELIEF_TBB AUTO CACHE STRING "Use oneTBB: ON, OFF, or AUTO: where it is installed")
+if(RELIEF_TBB STREQUAL AUTO)
+    find_package(TBB QUIET)
+elseif(RELIEF_TBB)
+    find_package(TBB REQUIRED)
+endif()
+if(RELIEF_TBB AND TBB_FOUND)
+    set(RELIEF_HAS_TBB 1)
+else()
+    set(RELIEF_HAS_TBB 0)
+    find_package(Threads REQUIRED)
+    message(STATUS "relief: parallel loops use threads of the standard library, not oneTBB")
+endif()
+
 # Each component stands after those that it needs. The packages of CMake (NAME or NAME=VERSION), third parties of
 # relief-third-parties.cmake, packages of pkg-config, and the libraries that it does not know, are for programs that
 # link an installed static component.
 set(RELIEF_ALL mesh topology atlas files bake c shade reference accuracy)
-set(RELIEF_PACKAGES_mesh fmt TBB)
-set(RELIEF_PKG_CONFIG_mesh fmt tbb)
+if(NOT RELIEF_FMT_HEADERS)
+    list(APPEND RELIEF_PACKAGES_mesh fmt)
+    list(APPEND RELIEF_PKG_CONFIG_mesh fmt)
+endif()
+if(RELIEF_HAS_TBB)
+    list(APPEND RELIEF_PACKAGES_mesh TBB)
+    list(APPEND RELIEF_PKG_CONFIG_mesh tbb)
+else()
+    list(APPEND RELIEF_PACKAGES_mesh Threads)
+    list(APPEND RELIEF_LIBRARIES_mesh ${CMAKE_THREAD_LIBS_INIT})
+endif()
 set(RELIEF_NEEDED_BY_topology mesh)
 set(RELIEF_NEEDED_BY_atlas mesh)
 set(RELIEF_NEEDED_BY_files mesh)
@@ -71,6 +95,14 @@ if(BUILD_SHARED_LIBS)
     set(CMAKE_INSTALL_RPATH $ORIGIN $ORIGIN/${lib_from_bin})
 endif()
 
+# relief_hide_third_parties(TARGET): a shared library exports nothing of its static third parties, such as Draco. This
+# is an option of ELF linkers.
+function(relief_hide_third_parties target)
+    if(BUILD_SHARED_LIBS AND UNIX AND NOT APPLE)
+        target_link_options(${target} PRIVATE LINKER:--exclude-libs,ALL)
+    endif()
+endfunction()
+
 # relief_add_library(COMPONENT FOLDER [PRIVATE TARGETS...]): the target relief::COMPONENT with the public headers in
 # FOLDER/include and the private ones in FOLDER/src, linked with the components that it needs.
 function(relief_add_library component folder)
@@ -101,15 +133,12 @@ function(relief_add_library component folder)
     target_link_libraries(
         ${target}
         ${interface} ${needed}
-        PRIVATE $<BUILD_INTERFACE:relief_flags> fmt::fmt ${ARG_PRIVATE})
+        PRIVATE $<BUILD_INTERFACE:relief_flags> ${RELIEF_FMT} ${ARG_PRIVATE})
     relief_precompile(${target} LIKE relief_precompiled)
     if(NOT component STREQUAL mesh)  # Its files are small, and repeat names.
         relief_batch(${target} 5)
     endif()
-    if(BUILD_SHARED_LIBS)
-        # Static third parties, such as Draco, stay private.
-        target_link_options(${target} PRIVATE LINKER:--exclude-libs,ALL)
-    endif()
+    relief_hide_third_parties(${target})
     if(RELIEF_INSTALL)
         install(
             TARGETS ${target}

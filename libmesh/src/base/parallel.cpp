@@ -1,27 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "parallel.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/partitioner.h>
-
 #include <algorithm>
 #include <exception>
+#include <functional>
 #include <limits>
-#include <memory>
 #include <mutex>
 #include <utility>
 
 #include "file_replacement.h"
 #include "progress_stage.h"
 #include "relief/mesh/execution.h"
+#include "threads.h"
 #include "work_array.h"
-
-#ifdef RELIEF_TSAN
-#include <sanitizer/tsan_interface.h>
-#endif
 
 namespace relief {
 using namespace relief::detail;
@@ -29,21 +20,6 @@ using namespace relief::detail;
 constinit std::atomic<void (*)()> detail::before_each_piece = nullptr;
 
 namespace {
-
-// oneTBB is not instrumented for ThreadSanitizer, which thus does not see that a loop's pieces run
-// between the loop's begin and end. These two functions declare it. This file, which has inline
-// functions of oneTBB, is not instrumented either (base/CMakeLists.txt).
-void release_writes([[maybe_unused]] void* loop) {
-#ifdef RELIEF_TSAN
-    __tsan_release(loop);
-#endif
-}
-
-void acquire_writes([[maybe_unused]] void* loop) {
-#ifdef RELIEF_TSAN
-    __tsan_acquire(loop);
-#endif
-}
 
 /// The exception of the failed piece with the smallest index.
 class FirstFailure {
@@ -85,23 +61,20 @@ void take_pieces(unsigned threads, std::size_t count, std::size_t grain,
     const std::size_t step = std::max(grain, count / (pieces_per_thread * threads));
     const std::size_t takers = std::min<std::size_t>(threads, (count + step - 1) / step);
     std::atomic<std::size_t> next = 0;
-    const auto take = [&](const auto&) {
+    run_on_threads(takers, 1, [&](std::size_t, std::size_t) {
         const unsigned before =
             std::exchange(current_thread_limit, threads / static_cast<unsigned>(takers));
         for (std::size_t begin = next.fetch_add(step); begin < count; begin = next.fetch_add(step))
             run_piece(begin, std::min(begin + step, count));
         current_thread_limit = before;
-    };
-    tbb::task_group_context context(tbb::task_group_context::isolated);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, takers), take, tbb::simple_partitioner(),
-                      context);
+    });
 }
 
-/// Runs the pieces that oneTBB chooses, or within the limit of this operation.
+/// Runs the pieces on all threads, or within the limit of this operation.
 ///
 /// After an exception oneTBB would cancel the loop and all nested loops, which would then return
 /// normally although some of their pieces never ran. Each exception is therefore caught in its
-/// piece. The isolated context prevents cancellation by oneTBB tasks of the caller.
+/// piece.
 template <typename RunPiece>
 void run_pieces(std::size_t count, std::size_t grain, const RunPiece& run_piece) {
     if (current_thread_limit == 1) return run_piece(0, count);
@@ -109,7 +82,6 @@ void run_pieces(std::size_t count, std::size_t grain, const RunPiece& run_piece)
     Workspace* const workspace = current_workspace;
     FileSet* const file_set = current_file_set;
     const auto run_and_catch = [&](std::size_t begin, std::size_t end) {
-        acquire_writes(&failure);
         Workspace* const before = std::exchange(current_workspace, workspace);
         FileSet* const set_before = std::exchange(current_file_set, file_set);
         if (!failure.is_before(begin)) {
@@ -121,18 +93,11 @@ void run_pieces(std::size_t count, std::size_t grain, const RunPiece& run_piece)
         }
         current_workspace = before;
         current_file_set = set_before;
-        release_writes(&failure);
     };
-    release_writes(&failure);
-    if (current_thread_limit > 0) {
+    if (current_thread_limit > 0)
         take_pieces(current_thread_limit, count, grain, run_and_catch);
-    } else {
-        tbb::task_group_context context(tbb::task_group_context::isolated);
-        tbb::parallel_for(
-            tbb::blocked_range<std::size_t>(0, count, grain),
-            [&](const auto& piece) { run_and_catch(piece.begin(), piece.end()); }, context);
-    }
-    acquire_writes(&failure);
+    else
+        run_on_threads(count, grain, std::ref(run_and_catch));
     failure.rethrow();
 }
 
@@ -165,7 +130,7 @@ void detail::parallel_for(std::size_t count, std::size_t grain,
         call_hook();
         body(begin, end);
     };
-    // Loops of one piece run here, so that programs with only such loops never start oneTBB.
+    // Loops of one piece run here, so that programs with only such loops never start threads.
     if (count <= grain) return run_piece(0, count);
     run_pieces(count, grain, run_piece);
 }
@@ -186,10 +151,7 @@ std::size_t detail::thread_count() {
     // The limits of this operation and of set_thread_limit(), or the number of processors. This
     // call starts no threads.
     if (current_thread_limit > 0) return current_thread_limit;
-    const auto capped =
-        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-    return std::min<std::size_t>(
-        capped, static_cast<std::size_t>(std::max(tbb::info::default_concurrency(), 1)));
+    return thread_limit();
 }
 
 void detail::parallel_tasks(const std::vector<std::function<void()>>& tasks, bool are_small) {
@@ -206,17 +168,6 @@ void detail::parallel_tasks(const std::vector<std::function<void()>>& tasks, boo
                  });
     for (const std::exception_ptr& failure : failures) {
         if (failure) std::rethrow_exception(failure);
-    }
-}
-
-void set_thread_limit(unsigned count) {
-    static std::mutex mutex;
-    static std::unique_ptr<tbb::global_control> limit;
-    const std::lock_guard lock(mutex);
-    limit.reset();
-    if (count > 0) {
-        limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                      count);
     }
 }
 
