@@ -22,6 +22,7 @@
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
 #include "rendered_methods.h"
+#include "single_processor.h"
 
 namespace relief::accuracy {
 using namespace relief::accuracy::detail;

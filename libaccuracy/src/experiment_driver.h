@@ -5,8 +5,6 @@
 /// Tests: tests/accuracy/experiment_driver_test.cpp.
 #pragma once
 
-#include <sched.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -225,23 +223,5 @@ double processor_seconds_of(const std::function<void()>& work);
 /// Returns the peak memory of `work` in bytes in addition to the memory before; nothing if the
 /// system does not report it.
 std::optional<std::uint64_t> peak_bytes_of(const std::function<void()>& work);
-
-/// Keeps all threads of this process on one processor during its lifetime. A software OpenGL driver
-/// starts its threads only once, so this is the only way to time it on one thread. The destructor
-/// restores the affinity that the calling thread had.
-class SingleProcessor {
-  public:
-    SingleProcessor();
-    ~SingleProcessor();
-    SingleProcessor(const SingleProcessor&) = delete;
-    SingleProcessor& operator=(const SingleProcessor&) = delete;
-
-    /// Returns whether the system allowed it; if not, nothing has changed.
-    [[nodiscard]] bool is_active() const { return is_active_; }
-
-  private:
-    ::cpu_set_t before_;
-    bool is_active_ = false;
-};
 
 }  // namespace relief::accuracy::detail

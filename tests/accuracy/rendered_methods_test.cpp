@@ -15,6 +15,7 @@
 #include "experiment_driver.h"
 #include "relief/mesh/mesh.h"
 #include "shading_experiments.h"
+#include "single_processor.h"
 #include "support/gl_environment.h"
 #include "support/labels.h"
 

@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -34,6 +33,7 @@
 #include "parallel.h"
 #include "portable_math.h"
 #include "progress_stage.h"
+#include "relaxed_store.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -314,7 +314,7 @@ std::vector<std::uint8_t> folded_vertices(StridedSpan<const glm::vec3> positions
                     TriangleKind::sound)
                     continue;
                 // Several threads may write the same 1 here.
-                std::atomic_ref(folded[triangle[i]]).store(1, std::memory_order_relaxed);
+                relaxed_store(folded[triangle[i]], 1);
             }
         }
     });

@@ -15,6 +15,7 @@
 
 #include "parallel.h"
 #include "portable_math.h"
+#include "relaxed_store.h"
 #include "topology/edge_collapse_parts.h"
 
 namespace relief::detail {
@@ -169,21 +170,22 @@ glm::dvec3 Collapser::input_normal(std::size_t triangle) const {
 /// Marks sharp vertices.
 void Collapser::prepare_normals() {
     std::atomic<bool> has_sharp = false;
-    parallel_for(
-        surface_.corners().size() / 3, group_size, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t t = begin; t < end; ++t) {
-                const glm::dvec3 normal = input_normal(t);
-                if (normal == glm::dvec3(0.0)) continue;
-                for (std::size_t corner = 3 * t; corner < 3 * t + 3; ++corner) {
-                    const std::uint32_t vertex = surface_[corner].vertex;
-                    const glm::dvec3 mean(mean_normals_[vertex]);
-                    if (glm::dot(normal, mean) > min_smooth_cosine * glm::length(mean)) continue;
-                    // Other threads may write the same value.
-                    std::atomic_ref(flags_[vertex]).store(is_sharp, std::memory_order_relaxed);
-                    has_sharp = true;
-                }
-            }
-        });
+    parallel_for(surface_.corners().size() / 3, group_size,
+                 [&](std::size_t begin, std::size_t end) {
+                     for (std::size_t t = begin; t < end; ++t) {
+                         const glm::dvec3 normal = input_normal(t);
+                         if (normal == glm::dvec3(0.0)) continue;
+                         for (std::size_t corner = 3 * t; corner < 3 * t + 3; ++corner) {
+                             const std::uint32_t vertex = surface_[corner].vertex;
+                             const glm::dvec3 mean(mean_normals_[vertex]);
+                             if (glm::dot(normal, mean) > min_smooth_cosine * glm::length(mean))
+                                 continue;
+                             // Other threads may write the same value.
+                             relaxed_store(flags_[vertex], is_sharp);
+                             has_sharp = true;
+                         }
+                     }
+                 });
     if (has_sharp || input_.min_normal_cosine) list_normals();
 }
 
@@ -391,8 +393,7 @@ void Collapser::assign_groups() {
                              continue;
                          // Other threads may write the same value.
                          for (std::size_t corner = first; corner < first + 3; ++corner)
-                             std::atomic_ref(at_border_[surface_[corner].vertex])
-                                 .store(1, std::memory_order_relaxed);
+                             relaxed_store(at_border_[surface_[corner].vertex], 1);
                      }
                  });
 }
