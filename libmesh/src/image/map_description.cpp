@@ -37,7 +37,8 @@ constexpr std::array<EnumName<ColorSpace>, 3> color_spaces = {
 /// Returns the value with a name in a table of names.
 template <typename Table>
 auto value_of(const Table& table, std::string_view name) {
-    const auto found = std::ranges::find_if(table, [&](const auto& e) { return name == e.name; });
+    const auto found =
+        std::find_if(table.begin(), table.end(), [&](const auto& e) { return name == e.name; });
     return found == table.end() ? std::nullopt : std::optional(found->value);
 }
 
@@ -97,9 +98,9 @@ constexpr std::array all_entries = {
           },
           [](const MapDescription& d, int) {
               if (!d.color_space) return std::string();
+              const auto has_value = [&](const auto& e) { return e.value == *d.color_space; };
               return std::string(
-                  std::ranges::find(color_spaces, *d.color_space, &EnumName<ColorSpace>::value)
-                      ->name);
+                  std::find_if(color_spaces.begin(), color_spaces.end(), has_value)->name);
           }},
     Entry{"relief:alpha",
           [](std::string_view text, MapDescription& d) {
@@ -112,7 +113,8 @@ constexpr std::array all_entries = {
 
 constexpr auto all_keys = [] {
     std::array<std::string_view, all_entries.size()> keys;
-    std::ranges::transform(all_entries, keys.begin(), &Entry::key);
+    std::transform(all_entries.begin(), all_entries.end(), keys.begin(),
+                   [](const Entry& entry) { return entry.key; });
     return keys;
 }();
 

@@ -17,7 +17,7 @@ bool holds_normals(MapKind kind) {
 }
 
 bool is_accepted(std::span<const MapKind> accepted, MapKind kind) {
-    return std::ranges::find(accepted, kind) != accepted.end();
+    return std::find(accepted.begin(), accepted.end(), kind) != accepted.end();
 }
 
 /// The kind that an image with this content seems to have.
