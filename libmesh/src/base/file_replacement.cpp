@@ -220,7 +220,7 @@ StagedFile::~StagedFile() {
         if (is_same_file(temporary_, descriptor_)) remove_file(temporary_);
         remove_from_list();
     }
-    close_descriptor(descriptor_);
+    if (descriptor_ >= 0) close_descriptor(descriptor_);
 }
 
 void StagedFile::complete() {
@@ -251,6 +251,8 @@ int StagedFile::replace(bool keeps_old) noexcept {
     error = rename_file(temporary_, target_);
     if (error == 0) {
         remove_from_list();
+        // Windows replaces no file that is open, as restore() may have to.
+        close_descriptor(std::exchange(descriptor_, -1));
         return 0;
     }
     // A rename between two names of one file would do nothing.

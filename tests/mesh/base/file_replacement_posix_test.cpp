@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Replacing files: modes, pipes and limits of names of Linux and macOS.
+// Replacing files: links, modes, pipes and limits of names of Linux and macOS.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -62,6 +62,36 @@ TEST(FileReplacement, ADeviceOrPipeIsAFileErrorAndStays) {
     std::filesystem::create_symlink(pipe, folder / "link.txt");
     EXPECT_THROW(FileReplacement(folder / "link.txt"), FileError);
     EXPECT_EQ(entry_count(folder.path()), 2U);
+}
+
+TEST(FileReplacement, ALinkIsFollowedAndStays) {
+    const test::TemporaryDirectory folder;
+    std::filesystem::create_directory(folder / "target");
+    std::ofstream(folder / "target/a.txt") << "old";
+    std::filesystem::create_symlink("target/a.txt", folder / "link.txt");
+    std::filesystem::create_symlink("target/b.txt", folder / "new.txt");
+    const std::string text = "new";
+    replace_file(folder / "link.txt", std::as_bytes(std::span(text)));
+    replace_file(folder / "new.txt", std::as_bytes(std::span(text)));
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
+    EXPECT_EQ(test::read_bytes(folder / "target/a.txt"), "new");
+    EXPECT_EQ(test::read_bytes(folder / "target/b.txt"), "new");
+    EXPECT_EQ(entry_count(folder / "target"), 2U);
+    EXPECT_EQ(entry_count(folder.path()), 3U);
+}
+
+TEST(FileReplacement, ATemporaryFileThatIsReplacedByALinkIsRefused) {
+    const test::TemporaryDirectory folder;
+    std::ofstream(folder / "a.txt") << "old";
+    std::ofstream(folder / "victim.txt") << "victim";
+    FileReplacement replacement(folder / "a.txt");
+    std::filesystem::remove(replacement.temporary());
+    std::filesystem::create_symlink("victim.txt", replacement.temporary());
+    write_all(replacement, std::as_bytes(std::span("new")));
+    EXPECT_THAT(test::message_of<FileError>([&] { replacement.commit(); }),
+                testing::HasSubstr("another program replaced the temporary file"));
+    EXPECT_EQ(test::read_bytes(folder / "a.txt"), "old");
+    EXPECT_EQ(test::read_bytes(folder / "victim.txt"), "victim");
 }
 
 }  // namespace
