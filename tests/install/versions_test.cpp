@@ -21,7 +21,8 @@ class Sources : public testing::Test {
     Sources() {
         for (const char* file :
              {"cmake/commit.cmake", ".gitattributes", "scripts/dev/release", "CITATION.cff",
-              "libmesh/include/relief/version.h", "tests/install/interface.txt"}) {
+              "debian/changelog", "libmesh/include/relief/version.h",
+              "tests/install/interface.txt"}) {
             create_directories((root / file).parent_path());
             std::filesystem::copy_file(source_directory() / file, root / file);
         }
@@ -98,10 +99,14 @@ TEST_F(Sources, BecomeAReleaseAndTheNextVersion) {
     EXPECT_THAT(shell("git show v1.1.0:CITATION.cff").out,
                 HasSubstr("version: 1.1.0\ndate-released: 20"));
     EXPECT_THAT(shell("git show v1.1.0:CHANGELOG.md").out, HasSubstr("\n## 1.1.0 - 20"));
+    EXPECT_THAT(shell("git show v1.1.0:debian/changelog").out,
+                testing::StartsWith("relief (1.1.0) unstable; "));
     EXPECT_THAT(text_of("libmesh/include/relief/version.h"),
                 HasSubstr("RELIEF_VERSION \"1.2.0-dev\"\n#define RELIEF_VERSION_MAJOR 1\n"
                           "#define RELIEF_VERSION_MINOR 2\n"));
     EXPECT_THAT(text_of("CITATION.cff"), HasSubstr("version: 1.2.0-dev\nlicense"));
+    EXPECT_THAT(text_of("debian/changelog"),
+                testing::StartsWith("relief (1.2.0~dev) UNRELEASED; "));
     EXPECT_THAT(text_of("CHANGELOG.md"), HasSubstr("\n## Unreleased\n\n## 1.1.0 - 20"));
     EXPECT_EQ(shell("git status --porcelain").out, "");
 
