@@ -1,5 +1,13 @@
 # Documents of the installed tree: the guides that help texts name, examples, the licenses of third parties, and the
-# bill of materials.
+# bill of materials. Without the tools, there are examples only.
+install(
+    DIRECTORY examples
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/librelief-dev
+    COMPONENT development)
+if(NOT RELIEF_TOOLS)
+    return()
+endif()
+
 set(notices ${PROJECT_BINARY_DIR}/notices)
 set(notice_files ${notices}/third-party-notices.txt ${notices}/relief.spdx.json)
 add_custom_command(
@@ -9,7 +17,6 @@ add_custom_command(
     COMMENT "Writing the notices of third parties"
     VERBATIM)
 add_custom_target(relief_notices ALL DEPENDS ${notice_files})
-file(MAKE_DIRECTORY ${notices})  # An install without the tools has none.
 
 set(documents ${CMAKE_INSTALL_DATADIR}/doc/relief)
 install(
@@ -26,7 +33,3 @@ install(
     COMPONENT tools
     PATTERN docs/site EXCLUDE
     PATTERN releasing.md EXCLUDE)
-install(
-    DIRECTORY examples
-    DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/librelief-dev
-    COMPONENT development)

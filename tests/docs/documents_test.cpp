@@ -359,6 +359,25 @@ TEST(Site, HasNoBrokenLinkAndFitsAPhone) {
     EXPECT_EQ(result.exit_code, 0) << result.out << result.error;
 }
 
+TEST(Readme, ShowsCodeThatCompiles) {
+    const std::string readme = read_bytes(source_directory() / "README.md");
+    static const std::string start = "```cpp\n";
+    const TemporaryDirectory folder;
+    int blocks = 0;
+    for (std::size_t at = readme.find(start); at != std::string::npos;
+         at = readme.find(start, at + 1), ++blocks) {
+        const std::size_t begin = at + start.size();
+        std::ofstream(folder / "shown.cpp")
+            << readme.substr(begin, readme.find("```", begin) - begin);
+        const ProgramResult result =
+            run_shell(RELIEF_COMPILER " -std=c++20 -fsyntax-only -Wall -Wextra -Werror -I '" +
+                          (source_directory() / "libmesh/include").string() + "' shown.cpp",
+                      folder.path());
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+    }
+    EXPECT_EQ(blocks, 1);
+}
+
 /// Collects the citations of a text with the file that contains them.
 void collect(const std::string& text, const std::string& place,
              std::map<std::string, std::string>& citations) {

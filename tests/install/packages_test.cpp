@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The packages that scripts/package makes: Debian's, their source package, and the archive, which
-// action.yml uses.
+// action.yml uses. The recipe of vcpkg.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -210,12 +210,51 @@ TEST_F(MadePackages, ActionChecksModelsWithTheArchive) {
         run(action + package + "inputs.models='" + data + "/urn-*.obj' inputs.maps='" + data +
             "/scenes/bricks-normal.png'"),
         testing::AllOf(HasSubstr("urn-low.obj: Wavefront OBJ"), HasSubstr("bricks-normal.png")));
-    EXPECT_EQ(run_unchecked(action + package + "inputs.models='" + data + "/vase.mtl'").exit_code,
-              1);
+    const ProgramResult failed = run_unchecked(action + package + "inputs.models='missing-*.glb'");
+    EXPECT_EQ(failed.exit_code, 1);
+    EXPECT_THAT(failed.error, HasSubstr("missing-*.glb: no such file"));
     EXPECT_THAT(run_unchecked(action + package + "inputs.sha256=" + std::string(64, '0')).error,
                 HasSubstr("its SHA-256 is not 000"));
     EXPECT_THAT(run_unchecked(action + "inputs.models=a.glb").error,
                 HasSubstr("'main' is not the tag of a release"));
+}
+
+// vcpkg itself is not needed: vcpkg_functions.cmake has the functions that the recipe calls.
+TEST_LABELS(slow);
+TEST(VcpkgPort, InstallsWhatFindPackageFinds) {
+    const TemporaryDirectory folder;
+    const std::string prefix = (folder / "packages").string();
+    const std::string source = source_directory().string();
+    const auto run = [&](const std::string& line) {
+        const ProgramResult result = run_program({"/bin/sh", "-c", line}, folder.path());
+        EXPECT_EQ(result.exit_code, 0) << line << "\n" << result.out << result.error;
+        return result.out;
+    };
+    run("cmake -DCURRENT_PORT_DIR='" + source +
+        "/packaging/vcpkg/relief' -DCURRENT_PACKAGES_DIR='" + prefix +
+        "' -DCURRENT_BUILDTREES_DIR=\"$PWD/trees\" -DBUILD='" RELIEF_BUILD_FOLDER
+        "' '-DFEATURES=core;bake;c;topology' -P '" +
+        source + "/tests/install/vcpkg_functions.cmake'");
+    EXPECT_EQ(run("sed -n 's/^RELIEF_COMPONENTS:[A-Z]*=//p' trees/CMakeCache.txt"),
+              "mesh;atlas;bake;c;topology\n");
+    EXPECT_EQ(run("cd packages && ls && ls share"), "include\nlib\nshare\nrelief\n");
+    EXPECT_TRUE(std::filesystem::exists(prefix + "/share/relief/copyright"));
+    std::filesystem::create_directory(folder / "engine");
+    std::ofstream(folder / "engine/CMakeLists.txt")
+        << "cmake_minimum_required(VERSION 3.25)\nproject(engine LANGUAGES CXX)\n"
+        << "find_package(relief REQUIRED COMPONENTS mesh)\nadd_executable(engine " << source
+        << "/examples/normals_and_tangents.cpp)\n"
+        << "target_link_libraries(engine PRIVATE relief::mesh)\n";
+    run("cmake -G Ninja -S engine -B build -DCMAKE_CXX_COMPILER='" RELIEF_COMPILER
+        "' -DCMAKE_PREFIX_PATH='" +
+        prefix + "' && cmake --build build");
+    EXPECT_THAT(run("build/engine && grep relief_DIR build/CMakeCache.txt"),
+                testing::AllOf(HasSubstr("normal"), HasSubstr(prefix + "/share/relief")));
+}
+
+TEST(VcpkgPort, HasTheVersionOfTheSources) {
+    EXPECT_THAT(text_of_source("packaging/vcpkg/relief/vcpkg.json"),
+                HasSubstr("\"version\": \"" RELIEF_VERSION "\""));
 }
 
 }  // namespace

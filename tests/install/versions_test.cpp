@@ -21,8 +21,8 @@ class Sources : public testing::Test {
     Sources() {
         for (const char* file :
              {"cmake/commit.cmake", ".gitattributes", "scripts/dev/release", "CITATION.cff",
-              "debian/changelog", "libmesh/include/relief/version.h",
-              "tests/install/interface.txt"}) {
+              "debian/changelog", "packaging/vcpkg/relief/vcpkg.json",
+              "libmesh/include/relief/version.h", "tests/install/interface.txt"}) {
             create_directories((root / file).parent_path());
             std::filesystem::copy_file(source_directory() / file, root / file);
         }
@@ -105,6 +105,8 @@ TEST_F(Sources, BecomeAReleaseAndTheNextVersion) {
                 HasSubstr("RELIEF_VERSION \"1.2.0-dev\"\n#define RELIEF_VERSION_MAJOR 1\n"
                           "#define RELIEF_VERSION_MINOR 2\n"));
     EXPECT_THAT(text_of("CITATION.cff"), HasSubstr("version: 1.2.0-dev\nlicense"));
+    EXPECT_THAT(text_of("packaging/vcpkg/relief/vcpkg.json"),
+                HasSubstr("\"version\": \"1.2.0-dev\""));
     EXPECT_THAT(text_of("debian/changelog"),
                 testing::StartsWith("relief (1.2.0~dev) UNRELEASED; "));
     EXPECT_THAT(text_of("CHANGELOG.md"), HasSubstr("\n## Unreleased\n\n## 1.1.0 - 20"));
