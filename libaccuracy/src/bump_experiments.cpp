@@ -324,7 +324,7 @@ constexpr std::array field_cases = {
 
 PreparedExperiment on_field(const FieldCase& one) {
     constexpr int side = 256;  // The same size as in docs/bump.md.
-    const FieldRecipe& recipe = field_recipe(one.recipe);
+    const FieldRecipe recipe = field_recipe(one.recipe);
     PreparedExperiment prepared = on_recipe(recipe, side);
     prepared.report.question = fmt::format(
         "Which kernel is most accurate on such a map ({}), and what does it cost?", one.recipe);
