@@ -29,6 +29,9 @@ py::dict to_dict(const AtlasStats& stats) {
     result["seam_length"] = stats.seam_length;
     result["relative_seam_length"] = stats.relative_seam_length;
     result["area"] = stats.area;
+    result["perimeter"] = stats.perimeter;
+    result["padding_share"] = stats.padding_share;
+    result["safe_mip_level"] = stats.safe_mip_level;
     return result;
 }
 
@@ -93,6 +96,8 @@ py::dict py_measure_texcoords(const MeshObject& mesh, std::pair<int, int> size,
     append(findings, report);
     py::dict result;
     result["atlas"] = to_dict(quality.stats);
+    result["tiles"] = quality.tiles;
+    result["shared_charts"] = quality.shared_charts;
     result["overlapping"] = quality.overlapping;
     result["inverted"] = quality.inverted;
     result["flat"] = quality.flat;
@@ -122,7 +127,9 @@ void add_unwrap(py::module_& module) {
         "Measure the texture coordinates of a mesh on a map of `size` (width, height).\n\n"
         "The result has the keys of `texcoords` in `relief-mesh check --map-size --json`, and\n"
         "`charts`, int32 (m,): the chart of each triangle, or -1 if it has no area or is not\n"
-        "finite. `min_distance` is that of two charts in texels, or None above 64.\n\n"
+        "finite. `min_distance` is that of two charts in texels, or None above 64. Charts with\n"
+        "exactly the same triangles in the map share texels (`shared_charts`) and do not overlap.\n"
+        "`tiles` has the numbers of the UDIM tiles with triangles.\n\n"
         "Raises InvalidInput if the mesh has no texture coordinates, and for wrong sizes.");
 }
 

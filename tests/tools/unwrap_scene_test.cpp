@@ -542,6 +542,37 @@ TEST(UnwrapScene, StacksEqualMeshes) {
     const GltfDocument document = read_document(workplace / "out/a.glb");
     EXPECT_EQ(document.mesh({0, 0}).texcoords, document.mesh({1, 0}).texcoords);
     EXPECT_TRUE(box_of(document, {0, 0}).is_apart_from(box_of(document, {2, 0})));
+    const ProgramResult checked = workplace.run("relief-mesh check out/a.glb --map-size 256");
+    EXPECT_EQ(checked.exit_code, 0) << checked.error;
+    EXPECT_THAT(checked.out, HasSubstr("texcoords 2 charts "));
+    EXPECT_THAT(checked.out, HasSubstr(", 1 chart shares the texels of an equal one\n"));
+}
+
+TEST(UnwrapScene, KeepsMeshesThatTouchApartInChecks) {
+    const Workplace workplace;
+    SceneFile scene;
+    for (int i = 0; i < 2; ++i) {
+        json square = scene.square(static_cast<float>(i));
+        const float left = 0.25F * static_cast<float>(i);
+        square["attributes"]["TEXCOORD_0"] =
+            scene.add(std::vector<float>{left, 1, left + 0.25F, 1, left + 0.25F, 0, left, 0}, 5126,
+                      "VEC2", 2);
+        scene.root["meshes"].push_back({{"primitives", {square}}});
+    }
+    scene.root["scenes"] = json::parse(R"([{"nodes": [0, 1]}])");
+    scene.root["nodes"] = json::parse(R"([{"mesh": 0}, {"mesh": 1}])");
+    scene.write(workplace);
+    EXPECT_THAT(workplace.run("relief-mesh check scene.gltf --map-size 256").out,
+                HasSubstr("texcoords 2 charts "));
+    json joined = scene.root;
+    joined["meshes"] = json::array(
+        {{{"primitives",
+           {scene.root["meshes"][0]["primitives"][0], scene.root["meshes"][1]["primitives"][0]}}}});
+    joined["nodes"].erase(1);
+    joined["scenes"] = json::parse(R"([{"nodes": [0]}])");
+    workplace.write("joined.gltf", joined.dump());
+    EXPECT_THAT(workplace.run("relief-mesh check joined.gltf --map-size 256").out,
+                HasSubstr("texcoords 1 chart "));
 }
 
 TEST(UnwrapScene, ContinuesTheWorkOfOtherCommands) {

@@ -34,12 +34,19 @@ TEST(UnwrapCommand, MakesAMeshReadyForBaking) {
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("atlas     1 chart (0 below 64 texels), "));
     EXPECT_THAT(result.out, HasSubstr(" % of 64 x 128 texels used\n"));
+    // A perimeter of 232 texels and half of the padding, with round corners.
+    EXPECT_THAT(result.out, HasSubstr("          the padding of 1 chart costs 8.8 % of them\n"));
     EXPECT_THAT(result.out, HasSubstr("padding   6 texels, enough up to mip level 1\n"));
     const json report = json::parse(workplace.read("out/a.json"));
     EXPECT_EQ(report["tool"], "relief-mesh unwrap");
+    for (const char* stage : {"joining triangles", "dividing into charts", "flattening charts",
+                              "packing charts", "measuring charts"})
+        EXPECT_GE(report["unwrap_milliseconds"][stage].get<double>(), 0.0) << stage;
     EXPECT_EQ(report["options"]["size"], json({64, 128}));
     EXPECT_EQ(report["options"]["padding"], 6);
     EXPECT_EQ(report["atlas"]["charts"], 1);
+    EXPECT_EQ(report["atlas"]["safe_mip_level"], 1);
+    EXPECT_NEAR(report["atlas"]["padding_share"].get<double>(), 0.088, 1e-3);
     EXPECT_NEAR(report["atlas"]["area"].get<double>(), 4.0, 1e-6);
     // A square of 58 texels, with half of the padding and a thousandth of a texel on each side.
     EXPECT_NEAR(report["atlas"]["texels_per_unit"].get<double>(), 29.0, 0.3);
@@ -129,6 +136,16 @@ TEST(UnwrapCommand, NumbersTilesUpwards) {
     EXPECT_TRUE(low > 0.0F && low < 0.2F) << low;
     EXPECT_TRUE(high > 1.0F && high < 2.0F) << high;
     EXPECT_TRUE(right > 9.5F && right < 10.0F) << right;
+    const ProgramResult checked =
+        workplace.run("relief-mesh check out/a.obj --map-size 128 --json");
+    for (const json& map : json::parse(checked.out)["files"][0]["texcoords"]) {
+        EXPECT_EQ(map["outside"], 0);
+        EXPECT_EQ(map["overlapping"], 0);
+        for (const json& tile : map["tiles"])
+            EXPECT_TRUE(tile >= 1001 && tile <= 1011) << tile;
+    }
+    EXPECT_THAT(workplace.run("relief-mesh check out/a.obj --map-size 128").out,
+                testing::ContainsRegex(", in [0-9]+ tiles: 100"));
 }
 
 TEST(UnwrapCommand, SplitsAtEveryEdgeThatIsNotFlat) {

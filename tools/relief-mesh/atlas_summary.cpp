@@ -2,6 +2,7 @@
 #include "atlas_summary.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -20,7 +21,21 @@ std::string used_text(const AtlasStats& stats) {
                        stats.small_charts);
 }
 
+/// Returns the numbers of the first tiles: "1001, 1002, 1003".
+std::string tile_text(const std::vector<int>& tiles) {
+    constexpr std::size_t max_numbers = 10;
+    const std::size_t shown = std::min(tiles.size(), max_numbers);
+    return fmt::format("{}{}",
+                       fmt::join(tiles.begin(), tiles.begin() + std::ptrdiff_t(shown), ", "),
+                       shown < tiles.size() ? ", ..." : "");
+}
+
 }  // namespace
+
+std::string mip_text(const std::optional<int>& safe_level) {
+    return safe_level ? fmt::format("enough up to mip level {}", *safe_level)
+                      : "too few for bilinear lookups";
+}
 
 glm::ivec2 parse_atlas_size(const std::string& subject, const std::string& text) {
     const std::size_t cross = text.find('x');
@@ -44,11 +59,16 @@ Json stats_json(const AtlasStats& stats) {
             {"max_anisotropy", stats.max_anisotropy},
             {"seam_length", stats.seam_length},
             {"relative_seam_length", stats.relative_seam_length},
-            {"area", stats.area}};
+            {"area", stats.area},
+            {"perimeter", stats.perimeter},
+            {"padding_share", stats.padding_share ? Json(*stats.padding_share) : Json()},
+            {"safe_mip_level", stats.safe_mip_level ? Json(*stats.safe_mip_level) : Json()}};
 }
 
 Json quality_json(const TexcoordQuality& quality) {
     return {{"atlas", stats_json(quality.stats)},
+            {"tiles", quality.tiles},
+            {"shared_charts", quality.shared_charts},
             {"overlapping", quality.overlapping},
             {"inverted", quality.inverted},
             {"flat", quality.flat},
@@ -62,6 +82,8 @@ void add_stats(Summary& summary, const AtlasStats& stats, const glm::ivec2& size
         "atlas",
         {fmt::format("{}, {:.1f} % of {}{} x {} texels used", used_text(stats), 100.0 * stats.used,
                      tiles == 1 ? "" : fmt::format("{} tiles of ", tiles), size.x, size.y),
+         fmt::format("the padding of {} costs {:.1f} % of them", counted(stats.charts, "chart"),
+                     100.0 * stats.padding_share.value_or(0.0)),
          fmt::format("seams: length {:.4g}, {:.3g} times the root of the area", stats.seam_length,
                      stats.relative_seam_length)},
         {{"atlas", stats_json(stats)}});
@@ -86,14 +108,22 @@ std::string quality_text(const std::string& name, const TexcoordQuality& quality
         "{:.3f}, seams {:.3g}",
         used_text(stats), 100.0 * stats.used, stats.texels_per_unit, stats.min_density,
         stats.max_density, stats.stretch, stats.relative_seam_length);
-    if (quality.min_distance) text += fmt::format(", {:.2g} texels apart", *quality.min_distance);
+    if (quality.tiles.size() > 1 || (quality.tiles.size() == 1 && quality.tiles[0] != 1001))
+        text += fmt::format(", in {}: {}", counted(quality.tiles.size(), "tile"),
+                            tile_text(quality.tiles));
+    if (quality.min_distance)
+        text += fmt::format(", {:.2g} texels apart ({})", *quality.min_distance,
+                            mip_text(stats.safe_mip_level));
+    if (quality.shared_charts > 0)
+        text += fmt::format(", {} the texels of an equal one",
+                            counted(quality.shared_charts, "chart shares", "charts share"));
     const auto add = [&](std::size_t count, const char* what) {
         if (count > 0) text += fmt::format(", {} {}", count, what);
     };
     add(quality.overlapping, "overlapping");
     add(quality.inverted, "inverted");
     add(quality.flat, "flat");
-    add(quality.outside, "outside of the map");
+    add(quality.outside, "outside of the map or its tiles");
     if (quality.mirrored_charts > 0)
         text += fmt::format(", {} mirrored", counted(quality.mirrored_charts, "chart"));
     return text;

@@ -27,6 +27,9 @@ Json quality_json(const TexcoordQuality& quality);
 /// Adds the rows "atlas", "stacked", "density" and "stretch". \param tiles  of UDIM
 void add_stats(Summary& summary, const AtlasStats& stats, const glm::ivec2& size, int tiles);
 
+/// Returns "enough up to mip level 1". \param safe_level  AtlasStats::safe_mip_level
+std::string mip_text(const std::optional<int>& safe_level);
+
 /// One row of text for given coordinates. \param name  of the material, or empty
 std::string quality_text(const std::string& name, const TexcoordQuality& quality);
 

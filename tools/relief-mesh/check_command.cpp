@@ -45,9 +45,18 @@ struct MeasuredMap {
     Report report;
 };
 
-/// Adds the triangles of `mesh` with their coordinates to the mesh of their material. Materials
-/// are numbered from 1; 0 is none.
-void add_by_material(const Mesh& mesh, std::map<std::uint32_t, Mesh>& meshes) {
+/// All triangles with one material. Different meshes have no common chart, even if they touch, as
+/// in `unwrap`.
+struct MaterialMesh {
+    Mesh mesh;
+    std::vector<std::uint32_t> first_vertices;  ///< Of each mesh of the model.
+    std::size_t last_mesh = 0;
+};
+
+/// Adds the triangles of a primitive with their coordinates to the mesh of their material.
+/// Materials are numbered from 1; 0 is none. \param number  of its mesh
+void add_by_material(const Mesh& mesh, std::size_t number,
+                     std::map<std::uint32_t, MaterialMesh>& meshes) {
     if (mesh.texcoords.empty()) return;
     std::vector<MaterialRange> ranges = mesh.material_ranges;
     if (ranges.empty())
@@ -56,8 +65,12 @@ void add_by_material(const Mesh& mesh, std::map<std::uint32_t, Mesh>& meshes) {
         std::vector<std::uint32_t> triangles(range.triangle_count);
         std::iota(triangles.begin(), triangles.end(), range.first_triangle);
         const Mesh part = part_of(mesh, triangles);
-        Mesh& target = meshes[range.material ? *range.material + 1 : 0];
+        MaterialMesh& all = meshes[range.material ? *range.material + 1 : 0];
+        Mesh& target = all.mesh;
         const auto first = static_cast<std::uint32_t>(target.positions.size());
+        if (all.first_vertices.empty() || all.last_mesh != number)
+            all.first_vertices.push_back(first);
+        all.last_mesh = number;
         target.positions.insert(target.positions.end(), part.positions.begin(),
                                 part.positions.end());
         target.texcoords.insert(target.texcoords.end(), part.texcoords.begin(),
@@ -68,19 +81,19 @@ void add_by_material(const Mesh& mesh, std::map<std::uint32_t, Mesh>& meshes) {
 }
 
 std::vector<MeasuredMap> measured_maps(const Model& model, const glm::ivec2& size) {
-    std::map<std::uint32_t, Mesh> meshes;
+    std::map<std::uint32_t, MaterialMesh> meshes;
     if (const auto* const document = std::get_if<GltfDocument>(&model)) {
         for (const GltfPrimitiveId id : document->triangle_primitives())
-            add_by_material(document->mesh(id), meshes);
+            add_by_material(document->mesh(id), id.mesh, meshes);
     } else {
-        add_by_material(std::get<MeshFile>(model).mesh, meshes);
+        add_by_material(std::get<MeshFile>(model).mesh, 0, meshes);
     }
     std::vector<MeasuredMap> maps;
-    for (const auto& [material, mesh] : meshes) {
+    for (const auto& [material, all] : meshes) {
         MeasuredMap& map = maps.emplace_back();
         if (meshes.size() > 1)
             map.material = material == 0 ? "no material" : fmt::format("material {}", material - 1);
-        map.quality = measure_texcoords(mesh, size, map.report);
+        map.quality = measure_texcoords(all.mesh, size, map.report, all.first_vertices);
     }
     return maps;
 }
@@ -421,7 +434,8 @@ Command add_check_command(CLI::App& tool) {
         "Print one JSON object: tool, version, sound, with_problems and unreadable (numbers of "
         "files), documentation (the page that describes the conditions), files [file, sound, "
         "error or: format, problems and notes of reading, texcoords (with --map-size) [material, "
-        "atlas, overlapping, inverted, flat, outside, mirrored_charts, min_distance, findings], "
+        "atlas, tiles, shared_charts, overlapping, inverted, flat, outside, mirrored_charts, "
+        "min_distance, findings], "
         "primitives [name, sound, triangles, "
         "vertices, size, spacing, overlap_raster, tangents {basis, variant, nearest, "
         "nearest_by_far, same_here, texcoord_set, texcoord_set_of_material, corners, left_out, "
@@ -433,9 +447,11 @@ Command add_check_command(CLI::App& tool) {
                "Check for baking: overlapping texture coordinates and triangles without texture "
                "gradient are problems, for any material.");
     add_value(app, "--map-size", "N|WxH",
-              "Measure the texture coordinates too, for a map of this size, 16 to 65536 texels: "
-              "charts, used texels, density, stretch, seams, distances, and overlapping, inverted "
-              "and mirrored parts. Primitives with the same material share a map.",
+              "Measure the texture coordinates too, for a map (or each tile of UDIM) of this size, "
+              "16 to 65536 texels: charts, used texels, density, stretch, seams, distances, and "
+              "overlapping, inverted and mirrored parts. Charts with exactly the same triangles "
+              "in the map share texels, others overlap. Primitives with the same material share "
+              "a map.",
               [&map_size = options->map_size](const std::string& subject, const std::string& text) {
                   map_size = parse_atlas_size(subject, text);
               });

@@ -124,16 +124,6 @@ std::vector<float> triangle_densities(const Mesh& mesh, bool by_color,
     return densities;
 }
 
-/// The highest mip level in which a bilinear lookup in one chart does not reach another one.
-/// \return none if not even level 0 is safe
-std::optional<int> safe_level(int padding) {
-    if (padding < 3) return std::nullopt;
-    int level = 0;
-    while (3 << (level + 1) <= padding)
-        ++level;
-    return level;
-}
-
 Json options_json(const UnwrapCommand& command) {
     const UnwrapOptions& options = command.options;
     Json json = {{"size", {options.size.x, options.size.y}},
@@ -152,13 +142,6 @@ Json options_json(const UnwrapCommand& command) {
     if (command.hard_degrees) json["split_hard"] = *command.hard_degrees;
     if (options.texels_per_unit) json["texels_per_unit"] = *options.texels_per_unit;
     return json;
-}
-
-void add_padding(Summary& summary, int padding) {
-    const std::optional<int> level = safe_level(padding);
-    summary.add("padding", fmt::format("{} texels, {}", padding,
-                                       level ? fmt::format("enough up to mip level {}", *level)
-                                             : "too few for bilinear lookups"));
 }
 
 /// Refuses options of new charts with --repack.
@@ -191,6 +174,41 @@ void check_request(const CLI::App& app, const UnwrapCommand& command) {
     require_folder_of(command.output);
 }
 
+/// The times of the stages of unwrap(), in their order.
+class UnwrapStages {
+  public:
+    [[nodiscard]] Progress& progress() { return progress_; }
+    /// Ends the last stage.
+    void end() { change(""); }
+    [[nodiscard]] const std::vector<Stage>& times() const { return times_; }
+
+  private:
+    void change(const std::string& stage) {
+        // The operation as a whole takes no time beside its stages.
+        if (stage == current_ || stage == "unwrapping") return;
+        const double milliseconds = 1e3 * stopwatch_.lap();
+        const auto known = std::find_if(times_.begin(), times_.end(),
+                                        [&](const Stage& one) { return one.name == current_; });
+        if (known != times_.end())
+            known->milliseconds += milliseconds;
+        else if (!current_.empty())
+            times_.push_back({current_, milliseconds});
+        current_ = stage;
+    }
+
+    Progress progress_{[this](const Progress::State& state) { change(state.stage); }};
+    std::string current_;
+    Stopwatch stopwatch_;
+    std::vector<Stage> times_;
+};
+
+Json milliseconds_json(const std::vector<Stage>& times) {
+    Json json = Json::object();
+    for (const Stage& stage : times)
+        json[stage.name] = stage.milliseconds;
+    return json;
+}
+
 ExitCode unwrap_model(const CLI::App& app, const UnwrapCommand& command) {
     check_request(app, command);
     UnwrapOptions options = command.options;
@@ -204,6 +222,8 @@ ExitCode unwrap_model(const CLI::App& app, const UnwrapCommand& command) {
     const std::vector<float> by_material =
         about(command.input, [&] { return material_densities(model, command.density); });
     AtlasStats stats;
+    UnwrapStages unwrap_stages;
+    options.execution.progress = &unwrap_stages.progress();
     const ChangedTexcoords changed = about(command.input, [&] {
         return change_texcoords(
             model, command.texcoords, [&](const TexcoordInput& input, Report& found) {
@@ -213,6 +233,7 @@ ExitCode unwrap_model(const CLI::App& app, const UnwrapCommand& command) {
                         triangle_densities(input.mesh, command.density.by_color, by_material);
                     return unwrap(input.mesh, options, found);
                 });
+                unwrap_stages.end();
                 stats = unwrapped.stats;
                 if (command.picture.file)
                     stages.run("draw", [&] {
@@ -240,13 +261,16 @@ ExitCode unwrap_model(const CLI::App& app, const UnwrapCommand& command) {
                             counted(changed.vertices_read, "vertex", "vertices")),
                 {{"triangles", changed.triangles}, {"vertices_read", changed.vertices_read}});
     add_stats(summary, stats, options.size, options.tiles);
-    add_padding(summary, options.padding);
+    summary.add("padding",
+                fmt::format("{} texels, {}", options.padding, mip_text(stats.safe_mip_level)));
     summary.add("result",
                 fmt::format("{}", counted(changed.vertices_written, "vertex", "vertices")),
                 {{"vertices_written", changed.vertices_written}});
     summary.add_findings(findings);
     summary.add("notes", changed.notes, {{"notes", changed.notes}});
     add_omitted(summary, omitted, command.output);
+    summary.add("unwrap", durations(unwrap_stages.times()),
+                {{"unwrap_milliseconds", milliseconds_json(unwrap_stages.times())}});
     summary.add_times(stages);
     std::vector<std::string> wrote = {file_and_size(command.output)};
     if (command.picture.file) wrote.push_back(file_and_size(*command.picture.file));

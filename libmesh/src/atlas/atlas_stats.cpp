@@ -27,18 +27,29 @@ double quantile(std::span<const std::pair<double, double>> values, double share)
     return values.empty() ? 0.0 : values.back().first;
 }
 
+/// The edges between two charts, and between a chart and a face without one, on the side of charts.
+std::vector<Corner> border_edges(const AtlasSurface& surface, const FaceCharts& charts) {
+    std::vector<Corner> edges;
+    for (Corner edge = 0; edge < surface.opposite.size(); ++edge) {
+        const std::uint32_t chart = charts.chart[edge / 3];
+        const Corner other = surface.opposite[edge];
+        if (chart != no_face && (other == no_corner || charts.chart[other / 3] != chart))
+            edges.push_back(edge);
+    }
+    return edges;
+}
+
 /// The length of the borders of charts. Where several faces meet, each pair of opposite directions
 /// counts once.
-double seam_length(const AtlasSurface& surface, const FaceCharts& charts) {
+double seam_length(const AtlasSurface& surface, std::span<const Corner> borders) {
     struct BorderEdge {
         std::uint32_t low, high;
         bool is_forward;
         Corner corner;
     };
     std::vector<BorderEdge> edges;
-    for (Corner edge = 0; edge < surface.opposite.size(); ++edge) {
-        const Corner other = surface.opposite[edge];
-        if (other != no_corner && charts.chart[edge / 3] == charts.chart[other / 3]) continue;
+    edges.reserve(borders.size());
+    for (const Corner edge : borders) {
         const glm::uvec3& face = surface.faces[edge / 3];
         const std::uint32_t from = face[static_cast<glm::length_t>(edge % 3)];
         const std::uint32_t to = face[static_cast<glm::length_t>((edge + 1) % 3)];
@@ -82,6 +93,15 @@ std::array<glm::dvec2, 3> texels_of(std::span<const glm::vec2> corner_texcoords,
         texels[i] = glm::dvec2(uv.x, 1.0 - uv.y) * glm::dvec2(size);
     }
     return texels;
+}
+
+std::optional<int> safe_mip_level(double distance) {
+    constexpr double rounding = 1e-3;
+    if (!(distance + rounding >= 3.0)) return std::nullopt;
+    int level = 0;
+    while (3.0 * static_cast<double>(std::uint64_t{2} << level) <= distance + rounding)
+        ++level;
+    return level;
 }
 
 AtlasStats stats_of(const AtlasSurface& surface, std::span<const glm::vec2> corner_texcoords,
@@ -130,7 +150,12 @@ AtlasStats stats_of(const AtlasSurface& surface, std::span<const glm::vec2> corn
     stats.used = map_area / (static_cast<double>(size.x) * size.y);
     stats.texels_per_unit = mean_density / surface.unit;
     stats.area = area * surface.unit * surface.unit;
-    const double seams = seam_length(surface, charts);
+    const std::vector<Corner> borders = border_edges(surface, charts);
+    for (const Corner edge : borders) {
+        const auto corners = texels_of(corner_texcoords, surface, triangles[edge / 3], size);
+        stats.perimeter += glm::length(corners[(edge + 1) % 3] - corners[edge % 3]);
+    }
+    const double seams = seam_length(surface, borders);
     stats.relative_seam_length = seams / std::sqrt(area);
     stats.seam_length = seams * surface.unit;
     return stats;

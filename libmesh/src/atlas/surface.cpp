@@ -399,4 +399,11 @@ AtlasSurface atlas_surface(const Mesh& mesh, const AtlasConstraints& constraints
     return surface;
 }
 
+void check_parts(const Mesh& mesh, std::span<const std::uint32_t> first_vertices) {
+    if (first_vertices.empty()) return;
+    if (first_vertices.front() != 0 || first_vertices.back() > mesh.positions.size() ||
+        !std::is_sorted(first_vertices.begin(), first_vertices.end()))
+        throw InvalidInput("the first vertices of the parts must ascend from 0");
+}
+
 }  // namespace relief::detail

@@ -75,4 +75,7 @@ struct AtlasConstraints {
 ///         triangles are cut apart
 AtlasSurface atlas_surface(const Mesh& mesh, const AtlasConstraints& constraints, Report& report);
 
+/// \throws InvalidInput if the first vertices of parts do not ascend from 0
+void check_parts(const Mesh& mesh, std::span<const std::uint32_t> first_vertices);
+
 }  // namespace relief::detail

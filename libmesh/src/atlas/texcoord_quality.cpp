@@ -6,7 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <set>
 #include <span>
+#include <utility>
 
 #include "atlas/atlas_stats.h"
 #include "atlas/box_tree.h"
@@ -69,14 +73,64 @@ bool separates(const MapTriangle& a, const MapTriangle& b) {
     return false;
 }
 
-/// The number of triangles that share an area with another one.
-std::size_t overlapping_among(std::span<const MapTriangle> triangles) {
+/// Returns the UDIM number of the tile that has all corners; none if there is none. A corner at a
+/// common border is in both tiles.
+std::optional<int> tile_of(const MapTriangle& triangle) {
+    constexpr double columns = 10.0;
+    constexpr double rows = 900.0;
+    glm::dvec2 low(std::numeric_limits<double>::infinity());
+    glm::dvec2 high(-low);
+    for (const glm::vec2& texcoord : triangle) {
+        const glm::dvec2 upwards(texcoord.x, 1.0 - static_cast<double>(texcoord.y));
+        low = glm::min(low, upwards);
+        high = glm::max(high, upwards);
+    }
+    // A line along a border counts to the tile before it.
+    const glm::dvec2 tile = glm::min(glm::floor(low), glm::max(glm::ceil(high) - 1.0, 0.0));
+    if (!(tile.x >= 0.0 && tile.x < columns && tile.y >= 0.0 && tile.y < rows)) return std::nullopt;
+    if (!(high.x <= tile.x + 1.0 && high.y <= tile.y + 1.0)) return std::nullopt;
+    return 1001 + static_cast<int>(tile.x) + 10 * static_cast<int>(tile.y);
+}
+
+/// For each chart, the number of the first one with the same triangles in the map. Charts without
+/// an area in the map are like no other one. \param drawn  the triangles of each chart
+std::vector<std::uint32_t> equal_charts(std::vector<std::vector<MapTriangle>> drawn) {
+    const auto is_less = [](const glm::vec2& a, const glm::vec2& b) {
+        return a.x != b.x ? a.x < b.x : a.y < b.y;
+    };
+    const auto is_triangle_less = [&](const MapTriangle& a, const MapTriangle& b) {
+        return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), is_less);
+    };
+    const auto is_chart_less = [&](const auto& a, const auto& b) {
+        if (a.size() != b.size()) return a.size() < b.size();
+        return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(),
+                                            is_triangle_less);
+    };
+    std::map<std::vector<MapTriangle>, std::uint32_t, decltype(is_chart_less)> firsts(
+        is_chart_less);
+    std::vector<std::uint32_t> first(drawn.size());
+    for (std::uint32_t chart = 0; chart < drawn.size(); ++chart) {
+        first[chart] = chart;
+        std::vector<MapTriangle>& triangles = drawn[chart];
+        if (triangles.empty()) continue;
+        for (MapTriangle& each : triangles)
+            std::rotate(each.begin(), std::min_element(each.begin(), each.end(), is_less),
+                        each.end());
+        std::sort(triangles.begin(), triangles.end(), is_triangle_less);
+        first[chart] = firsts.emplace(std::move(triangles), chart).first->second;
+    }
+    return first;
+}
+
+/// For each triangle, 1 if it shares an area with another one.
+std::vector<std::uint8_t> overlapping_among(std::span<const MapTriangle> triangles) {
+    std::vector<std::uint8_t> overlaps(triangles.size(), 0);
+    if (triangles.empty()) return overlaps;
     std::vector<PlaneBox> boxes;
     boxes.reserve(triangles.size());
     for (const MapTriangle& each : triangles)
         boxes.push_back(box_of(each));
     const BoxTree tree(boxes);
-    std::vector<std::uint8_t> overlaps(triangles.size(), 0);
     std::size_t steps = 0;
     for (const std::uint32_t i : tree.order()) {
         if (overlaps[i] != 0) continue;
@@ -89,12 +143,13 @@ std::size_t overlapping_among(std::span<const MapTriangle> triangles) {
             return true;
         });
     }
-    return static_cast<std::size_t>(std::count(overlaps.begin(), overlaps.end(), 1));
+    return overlaps;
 }
 
 struct Segment {
     std::array<glm::vec2, 2> ends;  ///< Texels.
     std::uint32_t chart;
+    std::optional<int> tile;
 };
 
 double distance(const glm::dvec2& point, const Segment& segment) {
@@ -121,7 +176,7 @@ bool cross(const Segment& a, const Segment& b) {
            side(b, a.ends[0]) * side(b, a.ends[1]) < 0;
 }
 
-/// The least distance between borders of different charts.
+/// The least distance between borders of different charts, unless they are in two tiles.
 std::optional<double> least_distance(std::span<const Segment> segments) {
     if (segments.empty()) return std::nullopt;
     std::vector<PlaneBox> boxes;
@@ -141,6 +196,8 @@ std::optional<double> least_distance(std::span<const Segment> segments) {
         const bool is_zero = tree.find(box, [&](std::uint32_t j) {
             check_cancelled(++steps);
             if (segments[i].chart == segments[j].chart) return false;
+            if (segments[i].tile && segments[j].tile && segments[i].tile != segments[j].tile)
+                return false;
             const double between =
                 cross(segments[i], segments[j]) ? 0.0 : distance(segments[i], segments[j]);
             if (!(between < least)) return false;
@@ -156,8 +213,11 @@ std::optional<double> least_distance(std::span<const Segment> segments) {
 /// The coordinates of a surface, measured face by face.
 class Measurement {
   public:
-    Measurement(const Mesh& mesh, const glm::ivec2& size, Report& report)
-        : size_(size), surface_(atlas_surface(mesh, {.at_seams = true}, report)) {
+    Measurement(const Mesh& mesh, const glm::ivec2& size,
+                std::span<const std::uint32_t> first_vertices, Report& report)
+        : size_(size),
+          surface_(
+              atlas_surface(mesh, {.at_seams = true, .first_vertices = first_vertices}, report)) {
         corner_texcoords_.reserve(3 * mesh.triangles.size());
         for (const glm::uvec3& triangle : mesh.triangles)
             for (int i = 0; i < 3; ++i)
@@ -165,6 +225,7 @@ class Measurement {
         triangles_ = triangles_of_faces(surface_);
         classify(report);
         charts_ = connected_parts(surface_, is_finite_);
+        find_shared_charts();
     }
 
     TexcoordQuality result() {
@@ -172,15 +233,18 @@ class Measurement {
         for (std::size_t t = 0; t < quality_.chart.size(); ++t) {
             const std::uint32_t face = surface_.face_of_triangle[t];
             if (face != no_face && charts_.chart[face] != no_face)
-                quality_.chart[t] = charts_.chart[face];
+                quality_.chart[t] = numbered_.chart[face];
         }
         count_inverted();
-        quality_.overlapping = drawn_.empty() ? 0 : overlapping_among(drawn_);
+        count_overlapping();
         quality_.min_distance = least_distance(borders());
-        FaceCharts measured = charts_;
+        FaceCharts measured = numbered_;
         for (std::uint32_t face = 0; face < surface_.faces.size(); ++face)
-            if (signs_[face] == 0) measured.chart[face] = no_face;
+            if (signs_[face] == 0 || is_copy(face)) measured.chart[face] = no_face;
         quality_.stats = stats_of(surface_, corner_texcoords_, measured, size_);
+        quality_.stats.used /= static_cast<double>(std::max<std::size_t>(quality_.tiles.size(), 1));
+        quality_.stats.safe_mip_level =
+            safe_mip_level(quality_.min_distance.value_or(max_distance));
         return std::move(quality_);
     }
 
@@ -194,6 +258,8 @@ class Measurement {
     void classify(Report& report) {
         is_finite_.assign(surface_.faces.size(), 1);
         signs_.assign(surface_.faces.size(), 0);
+        tiles_.assign(surface_.faces.size(), std::nullopt);
+        std::set<int> tiles;
         for (std::uint32_t face = 0; face < surface_.faces.size(); ++face) {
             const MapTriangle stored{texcoord(3 * face), texcoord(3 * face + 1),
                                      texcoord(3 * face + 2)};
@@ -204,14 +270,15 @@ class Measurement {
                            triangles_[face], "is not measured");
                 continue;
             }
-            const auto is_outside = [](const glm::vec2& p) {
-                return !(p.x >= 0.0F && p.x <= 1.0F && p.y >= 0.0F && p.y <= 1.0F);
-            };
-            if (std::any_of(stored.begin(), stored.end(), is_outside)) ++quality_.outside;
+            tiles_[face] = tile_of(stored);
+            if (!tiles_[face]) ++quality_.outside;
             // v points down, so that a clockwise triangle is not mirrored.
             const int sign = orientation_sign(stored[0], stored[1], stored[2]);
-            if (sign > 0) drawn_.push_back(stored);
-            if (sign < 0) drawn_.push_back({stored[0], stored[2], stored[1]});
+            if (sign != 0) {
+                drawn_.push_back(sign > 0 ? stored : MapTriangle{stored[0], stored[2], stored[1]});
+                drawn_faces_.push_back(face);
+                if (tiles_[face]) tiles.insert(*tiles_[face]);
+            }
             const Stretch stretch = stretch_of(
                 surface_, face, texels_of(corner_texcoords_, surface_, triangles_[face], size_));
             if (sign != 0 && std::abs(stretch.smallest) > 0.0)
@@ -219,6 +286,45 @@ class Measurement {
             else
                 ++quality_.flat;
         }
+        quality_.tiles.assign(tiles.begin(), tiles.end());
+    }
+
+    /// Numbers the charts anew, so that those that share texels have one number.
+    void find_shared_charts() {
+        std::vector<std::vector<MapTriangle>> drawn(charts_.count);
+        for (std::size_t i = 0; i < drawn_.size(); ++i)
+            drawn[charts_.chart[drawn_faces_[i]]].push_back(drawn_[i]);
+        first_chart_ = equal_charts(std::move(drawn));
+        std::vector<std::uint32_t> number(charts_.count);
+        for (std::uint32_t chart = 0; chart < charts_.count; ++chart)
+            number[chart] = first_chart_[chart] == chart
+                                ? static_cast<std::uint32_t>(numbered_.count++)
+                                : number[first_chart_[chart]];
+        quality_.shared_charts = charts_.count - numbered_.count;
+        for (const std::uint32_t chart : charts_.chart)
+            numbered_.chart.push_back(chart == no_face ? no_face : number[chart]);
+    }
+    /// Whether the chart of a face shares the texels of an earlier one.
+    [[nodiscard]] bool is_copy(std::uint32_t face) const {
+        const std::uint32_t chart = charts_.chart[face];
+        return chart != no_face && first_chart_[chart] != chart;
+    }
+
+    /// Charts that share texels are tested once, and count together.
+    void count_overlapping() {
+        std::vector<std::size_t> sharing(charts_.count, 0);
+        for (const std::uint32_t first : first_chart_)
+            ++sharing[first];
+        std::vector<MapTriangle> tested;
+        std::vector<std::uint32_t> chart;
+        for (std::size_t i = 0; i < drawn_.size(); ++i) {
+            if (is_copy(drawn_faces_[i])) continue;
+            tested.push_back(drawn_[i]);
+            chart.push_back(charts_.chart[drawn_faces_[i]]);
+        }
+        const std::vector<std::uint8_t> overlaps = overlapping_among(tested);
+        for (std::size_t i = 0; i < tested.size(); ++i)
+            if (overlaps[i] != 0) quality_.overlapping += sharing[chart[i]];
     }
 
     /// Counts mirrored charts and the triangles that differ from their chart.
@@ -239,11 +345,14 @@ class Measurement {
     [[nodiscard]] std::vector<Segment> borders() const {
         std::vector<Segment> result;
         for (Corner edge = 0; edge < surface_.opposite.size(); ++edge) {
-            if (surface_.opposite[edge] != no_corner || is_finite_[edge / 3] == 0) continue;
+            if (surface_.opposite[edge] != no_corner || is_finite_[edge / 3] == 0 ||
+                is_copy(edge / 3))
+                continue;
             const glm::vec2 scale(size_);
             const Segment segment{
                 {texcoord(edge) * scale, texcoord(next_in_triangle(edge)) * scale},
-                charts_.chart[edge / 3]};
+                numbered_.chart[edge / 3],
+                tiles_[edge / 3]};
             // Coordinates near the largest float are not finite in texels.
             if (is_finite(segment.ends[0]) && is_finite(segment.ends[1])) result.push_back(segment);
         }
@@ -254,25 +363,31 @@ class Measurement {
     AtlasSurface surface_;
     std::vector<glm::vec2> corner_texcoords_;
     std::vector<std::uint32_t> triangles_;
-    FaceCharts charts_;
+    FaceCharts charts_;                       ///< All connected parts.
+    std::vector<std::uint32_t> first_chart_;  ///< For each of them, the first with its texels.
+    FaceCharts numbered_;                     ///< Only first charts have numbers of their own.
     /// For each face: 1 as the surface shows it, -1 mirrored, 0 flat or not finite.
     std::vector<int> signs_;
     std::vector<std::uint8_t> is_finite_;
-    std::vector<MapTriangle> drawn_;
+    std::vector<std::optional<int>> tiles_;  ///< Of each face.
+    std::vector<MapTriangle> drawn_;         ///< The triangles that have an area in the map.
+    std::vector<std::uint32_t> drawn_faces_;
     TexcoordQuality quality_;
 };
 
 }  // namespace
 
-TexcoordQuality measure_texcoords(const Mesh& mesh, const glm::ivec2& size, Report& report) {
+TexcoordQuality measure_texcoords(const Mesh& mesh, const glm::ivec2& size, Report& report,
+                                  std::span<const std::uint32_t> first_vertices) {
     for (const int side : {size.x, size.y})
         if (side < 1 || side > 65536)
             throw InvalidInput(
                 fmt::format("the size of the map is {}, but must be 1 to 65536 texels", side));
     validate(mesh);
     if (mesh.texcoords.empty()) throw InvalidInput("there are no texture coordinates");
+    check_parts(mesh, first_vertices);
     const ProgressStage stage("measuring texture coordinates");
-    return Measurement(mesh, size, report).result();
+    return Measurement(mesh, size, first_vertices, report).result();
 }
 
 }  // namespace relief

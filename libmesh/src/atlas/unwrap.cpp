@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "atlas/atlas_stats.h"
@@ -66,11 +67,7 @@ void check(const UnwrapOptions& options, const Mesh& mesh) {
     for (const float each : options.densities)
         if (!(each > 0.0F && std::isfinite(each)))
             refuse("a relative density", static_cast<double>(each), "finite and above 0");
-    const std::vector<std::uint32_t>& first = options.first_vertices;
-    if (first.empty()) return;
-    if (first.front() != 0 || first.back() > mesh.positions.size() ||
-        !std::is_sorted(first.begin(), first.end()))
-        throw InvalidInput("the first vertices of the parts must ascend from 0");
+    check_parts(mesh, options.first_vertices);
 }
 
 /// A single triangle may be so small or thin that its corners round to a line.
@@ -238,6 +235,27 @@ FaceCharts fill_corners(const AtlasSurface& surface, const Atlas& atlas, double 
     return charts;
 }
 
+/// Measures the result, with what depends on the number of tiles and on the padding.
+AtlasStats stats_of(const AtlasSurface& surface, std::span<const glm::vec2> corner_texcoords,
+                    const FaceCharts& charts, const UnwrapOptions& options) {
+    AtlasStats stats = detail::stats_of(surface, corner_texcoords, charts, options.size);
+    stats.used /= options.tiles;
+    const double half = 0.5 * options.padding;
+    const double texels =
+        stats.perimeter * half + static_cast<double>(stats.charts) * std::numbers::pi * half * half;
+    stats.padding_share =
+        texels / (static_cast<double>(options.size.x) * options.size.y * options.tiles);
+    stats.safe_mip_level = safe_mip_level(options.padding);
+    return stats;
+}
+
+/// Returns the result of a stage of unwrapping.
+template <typename Work>
+auto during(const char* name, const Work& work) {
+    const ProgressStage stage(name);
+    return work();
+}
+
 }  // namespace
 
 Unwrapped unwrap(const Mesh& mesh, const UnwrapOptions& options, Report& report) {
@@ -249,11 +267,12 @@ Unwrapped unwrap(const Mesh& mesh, const UnwrapOptions& options, Report& report)
     Unwrapped result;
     result.corner_texcoords.assign(3 * mesh.triangles.size(), glm::vec2(0.0F));
     result.chart.assign(mesh.triangles.size(), std::nullopt);
-    const AtlasSurface surface =
-        atlas_surface(mesh,
-                      {options.split_materials, options.keep_seams || options.repack,
-                       options.split_hard, options.first_vertices, options.densities},
-                      report);
+    const AtlasSurface surface = during("joining triangles", [&] {
+        return atlas_surface(mesh,
+                             {options.split_materials, options.keep_seams || options.repack,
+                              options.split_hard, options.first_vertices, options.densities},
+                             report);
+    });
     if (surface.faces.empty()) return result;
     Layout layout{{options.size, options.padding, options.alignment, std::nullopt},
                   options.tiles,
@@ -264,12 +283,14 @@ Unwrapped unwrap(const Mesh& mesh, const UnwrapOptions& options, Report& report)
         const Atlas atlas = repacked_atlas(
             existing_charts(surface, mesh, options.size, options.unmirror, report), layout, report);
         const FaceCharts face_charts = fill_corners(surface, atlas, layout.lattice_size, result);
-        result.stats = stats_of(surface, result.corner_texcoords, face_charts, options.size);
-        result.stats.used /= options.tiles;
+        result.stats = stats_of(surface, result.corner_texcoords, face_charts, options);
         return result;
     }
-    Segmentation segmentation = divided(surface, ChartLimits{});
-    smooth_borders(surface, segmentation);
+    const Segmentation segmentation = during("dividing into charts", [&] {
+        Segmentation merged = divided(surface, ChartLimits{});
+        smooth_borders(surface, merged);
+        return merged;
+    });
 
     const double area = std::accumulate(surface.areas.begin(), surface.areas.end(), 0.0);
     const glm::dvec2 size(options.size);
@@ -287,15 +308,16 @@ Unwrapped unwrap(const Mesh& mesh, const UnwrapOptions& options, Report& report)
     limits.lattice_scale = texels_per_unit * layout.lattice_size / std::max(size.x, size.y);
     limits.max_side = max_overlength * std::max(size.x, size.y) / texels_per_unit;
     ChartMembers members(segmentation.chart);
-    std::vector<FlatChart> charts = flat_charts(surface, segmentation, members, limits);
+    std::vector<FlatChart> charts = during(
+        "flattening charts", [&] { return flat_charts(surface, segmentation, members, limits); });
     if (options.texels_per_unit) layout.packing.texels_per_unit = texels_per_unit;
     const DensityScale density(surface, options.densities);
     for (FlatChart& chart : charts)
         density.apply(chart);
     const Atlas atlas = packed_atlas(surface, std::move(charts), members, limits, density, layout);
+    const ProgressStage measuring("measuring charts");
     const FaceCharts face_charts = fill_corners(surface, atlas, layout.lattice_size, result);
-    result.stats = stats_of(surface, result.corner_texcoords, face_charts, options.size);
-    result.stats.used /= options.tiles;
+    result.stats = stats_of(surface, result.corner_texcoords, face_charts, options);
     return result;
 }
 

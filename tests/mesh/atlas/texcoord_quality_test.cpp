@@ -92,7 +92,11 @@ TEST(TexcoordQuality, MeasuresSquares) {
     EXPECT_NEAR(quality.stats.texels_per_unit, 32.0, 1e-6);
     EXPECT_NEAR(quality.stats.stretch, 1.0, 1e-9);
     EXPECT_NEAR(quality.stats.seam_length, 8.0, 1e-6);
+    EXPECT_NEAR(quality.stats.perimeter, 256.0, 1e-4);
+    EXPECT_EQ(quality.stats.padding_share, std::nullopt);
     EXPECT_NEAR(quality.min_distance.value(), 6.0, 1e-4);
+    EXPECT_EQ(quality.stats.safe_mip_level, 1);
+    EXPECT_EQ(quality.tiles, std::vector{1001});
     EXPECT_EQ(quality.overlapping + quality.inverted + quality.flat + quality.outside +
                   quality.mirrored_charts,
               0U);
@@ -166,6 +170,7 @@ TEST(TexcoordQuality, AgreesWithUnwrapping) {
         EXPECT_NEAR(quality.stats.used, unwrapped.stats.used, 1e-12) << name << ": order of charts";
         EXPECT_NEAR(quality.stats.stretch, unwrapped.stats.stretch, 1e-12) << name;
         EXPECT_EQ(quality.stats.seam_length, unwrapped.stats.seam_length) << name;
+        EXPECT_NEAR(quality.stats.perimeter, unwrapped.stats.perimeter, 1e-6) << name;
         EXPECT_GE(quality.min_distance.value_or(64.0), 3.0) << name;
     }
 }
@@ -188,11 +193,132 @@ TEST(TexcoordQuality, IsTheSameForAnyOrder) {
 }
 
 // Charts on top of each other must not take quadratic time: 20,000 squares are 8 * 10^8 pairs.
-TEST(TexcoordQuality, MeasuresStackedCharts) {
-    const std::vector<Rectangle> rectangles(20'000, {{8, 8}, {40, 40}});
-    const TexcoordQuality quality = measure_texcoords(squares(rectangles), map_size);
+TEST(TexcoordQuality, MeasuresManyChartsInOnePlace) {
+    std::vector<Rectangle> rectangles(20'000, {{8, 8}, {40, 40}});
+    TexcoordQuality quality = measure_texcoords(squares(rectangles), map_size);
+    EXPECT_EQ(quality.shared_charts, 19'999U);
+    EXPECT_EQ(quality.overlapping, 0U);
+    EXPECT_EQ(quality.min_distance, std::nullopt);
+    EXPECT_NEAR(quality.stats.used, 32.0 * 32 / (256 * 128), 1e-9);
+    for (std::size_t i = 0; i < rectangles.size(); ++i)
+        rectangles[i].max.x += 1e-3F * static_cast<float>(i);
+    quality = measure_texcoords(squares(rectangles), map_size);
+    EXPECT_EQ(quality.shared_charts, 0U);
     EXPECT_EQ(quality.overlapping, 40'000U);
     EXPECT_EQ(quality.min_distance, 0.0);
+}
+
+// Charts share texels if all of their triangles are equal in the map, and overlap otherwise.
+TEST(TexcoordQuality, TellsSharedChartsFromOverlaps) {
+    const Rectangle square{{8, 8}, {40, 40}};
+    const Rectangle mirrored{{40, 8}, {8, 40}};
+    Mesh mesh = squares({square, {{100, 8}, {132, 40}}, square});
+    TexcoordQuality quality = measure_texcoords(mesh, map_size);
+    EXPECT_EQ(quality.shared_charts, 1U);
+    EXPECT_EQ(quality.stats.charts, 2U);
+    EXPECT_EQ(quality.overlapping, 0U);
+    EXPECT_NEAR(quality.min_distance.value(), 60.0, 1e-4);
+    EXPECT_NEAR(quality.stats.area, 2.0, 1e-9) << "that of one of them";
+    EXPECT_EQ(quality.chart[0], quality.chart[4]);
+    EXPECT_NE(quality.chart[0], quality.chart[2]);
+
+    // The other diagonal makes other triangles.
+    mesh.triangles[4] = {8, 9, 11};
+    mesh.triangles[5] = {9, 10, 11};
+    quality = measure_texcoords(mesh, map_size);
+    EXPECT_EQ(quality.shared_charts, 0U);
+    EXPECT_EQ(quality.overlapping, 4U);
+
+    // One triangle of the third chart is elsewhere.
+    mesh = squares({square, square, square});
+    mesh.texcoords[11].x += 0.01F;
+    quality = measure_texcoords(mesh, map_size);
+    EXPECT_EQ(quality.shared_charts, 1U);
+    EXPECT_EQ(quality.overlapping, 6U) << "shared charts count together";
+
+    // The diagonal of a mirrored square lies across, unless its corners begin elsewhere.
+    mesh = squares({square, mirrored});
+    mesh.triangles[2] = {4, 5, 7};
+    mesh.triangles[3] = {5, 6, 7};
+    quality = measure_texcoords(mesh, map_size);
+    EXPECT_EQ(quality.shared_charts, 1U);
+    EXPECT_EQ(quality.mirrored_charts, 1U);
+    EXPECT_EQ(quality.overlapping, 0U);
+}
+
+// Tiles are unit squares in ten columns, with v upwards; texels are those of a tile.
+TEST(TexcoordQuality, KnowsTiles) {
+    const Mesh mesh = squares({{{8, 8}, {40, 40}},
+                               {{224, 40}, {256, 128}},    // Up to the border of the tile,
+                               {{256, 40}, {288, 128}},    // from which the next tile begins.
+                               {{40, -100}, {72, -50}},    // Above the first one.
+                               {{40, 150}, {72, 180}},     // Below: there is no tile.
+                               {{-40, 8}, {-8, 40}},       // Left of the first one.
+                               {{2570, 8}, {2590, 40}},    // Right of the tenth one.
+                               {{500, 50}, {520, 100}}});  // In two tiles.
+    const TexcoordQuality quality = measure_texcoords(mesh, map_size);
+    EXPECT_EQ(quality.outside, 8U);
+    EXPECT_EQ(quality.tiles, (std::vector{1001, 1002, 1011}));
+    EXPECT_EQ(quality.overlapping, 0U);
+    EXPECT_NE(quality.min_distance, 0.0) << "charts that touch are in different maps";
+    const TexcoordQuality first = measure_texcoords(squares({{{0, 0}, {256, 128}}}), map_size);
+    EXPECT_EQ(first.outside, 0U);
+    EXPECT_EQ(first.tiles, std::vector{1001});
+    EXPECT_NEAR(first.stats.used, 1.0, 1e-9);
+}
+
+// Two squares that touch on the surface and in the map are one chart of one part, or two charts of
+// two parts.
+TEST(TexcoordQuality, KeepsPartsApart) {
+    Mesh mesh = squares({{{8, 8}, {40, 40}}, {{40, 8}, {72, 40}}});
+    for (std::size_t v = 4; v < 8; ++v)
+        mesh.positions[v].x -= 1.0F;
+    EXPECT_EQ(measure_texcoords(mesh, map_size).stats.charts, 1U);
+    Report report;
+    const std::vector<std::uint32_t> parts = {0, 4};
+    const TexcoordQuality apart = measure_texcoords(mesh, map_size, report, parts);
+    EXPECT_EQ(apart.stats.charts, 2U);
+    EXPECT_EQ(apart.min_distance, 0.0);
+    EXPECT_EQ(apart.stats.safe_mip_level, std::nullopt);
+    const std::vector<std::uint32_t> wrong = {0, 9};
+    EXPECT_EQ(message_of<InvalidInput>([&] { measure_texcoords(mesh, map_size, report, wrong); }),
+              "the first vertices of the parts must ascend from 0");
+}
+
+TEST(TexcoordQuality, AgreesWithTilesAndStacks) {
+    Mesh mesh;
+    const Mesh part = test::random_mesh(7);
+    const glm::mat3 rotation(0.36F, 0.48F, -0.8F, -0.8F, 0.6F, 0.0F, 0.48F, 0.64F, 0.6F);
+    for (int copy = 0; copy < 4; ++copy) {
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        for (const glm::vec3& position : part.positions)
+            mesh.positions.push_back((copy % 2 == 0 ? position : rotation * position) +
+                                     glm::vec3(50.0F * static_cast<float>(copy), 0.0F, 0.0F));
+        for (const glm::uvec3& triangle : part.triangles)
+            mesh.triangles.push_back(triangle + first);
+    }
+    for (const bool stacks : {false, true}) {
+        for (const int tiles : {1, 12}) {
+            UnwrapOptions options;
+            options.size = {128, 128};
+            options.padding = 3;
+            options.stack = stacks;
+            options.tiles = tiles;
+            const Unwrapped unwrapped = unwrap(mesh, options);
+            const TexcoordQuality quality =
+                measure_texcoords(with_texcoords(mesh, unwrapped).mesh, options.size);
+            EXPECT_EQ(quality.overlapping + quality.inverted + quality.flat + quality.outside +
+                          quality.mirrored_charts,
+                      0U);
+            EXPECT_EQ(quality.shared_charts > 0, stacks);
+            EXPECT_EQ(quality.stats.charts, unwrapped.stats.charts);
+            EXPECT_NEAR(quality.stats.perimeter, unwrapped.stats.perimeter, 1e-6);
+            EXPECT_NEAR(quality.stats.seam_length, unwrapped.stats.seam_length, 1e-4);
+            EXPECT_NEAR(quality.stats.used * static_cast<double>(quality.tiles.size()),
+                        unwrapped.stats.used * tiles, 1e-9);
+            EXPECT_GE(quality.min_distance.value_or(64.0), 3.0);
+        }
+    }
 }
 
 TEST(TexcoordQuality, RefusesWhatItCannotMeasure) {

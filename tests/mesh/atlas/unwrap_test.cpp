@@ -264,6 +264,41 @@ TEST(Unwrap, KeepsPaddingAndBlocks) {
     }
 }
 
+// The padding around convex charts is known exactly, so that no packing can use more texels.
+TEST(Unwrap, StatesTheCostOfThePadding) {
+    const Unwrapped plane = unwrap(test::flat_grid(20));
+    const double side = std::sqrt(plane.stats.used) * 2048.0;
+    EXPECT_NEAR(plane.stats.perimeter, 4.0 * side, 0.01);
+    EXPECT_NEAR(plane.stats.padding_share.value(),
+                (8.0 * side + 4.0 * std::numbers::pi) / (2048.0 * 2048.0), 1e-9);
+    EXPECT_EQ(plane.stats.safe_mip_level, 0);
+
+    Mesh soup = test::soup(make_sphere(12, 6));
+    soup.texcoords = {};
+    for (std::size_t v = 0; v < soup.positions.size(); ++v)
+        soup.positions[v] += glm::vec3(5.0F * static_cast<float>(v / 3), 0.0F, 0.0F);
+    UnwrapOptions options;
+    options.size = {256, 256};
+    double least_used = 1.0;
+    for (const int padding : {0, 2, 6, 12}) {
+        options.padding = padding;
+        const AtlasStats stats = unwrap(soup, options).stats;
+        EXPECT_EQ(stats.charts, 120U) << "144 triangles, of which 24 at the poles have no area";
+        EXPECT_LE(stats.used + stats.padding_share.value(), 1.0) << padding;
+        EXPECT_GT(stats.used + stats.padding_share.value(), 0.6) << padding;
+        EXPECT_LT(stats.used, least_used);
+        least_used = stats.used;
+        EXPECT_EQ(stats.safe_mip_level, padding < 3 ? std::nullopt : std::optional(padding / 6))
+            << "0 for 3 to 5, 1 for 6, 2 for 12";
+    }
+    options.padding = 4;
+    const double single = unwrap(soup, options).stats.padding_share.value();
+    options.tiles = 4;
+    const AtlasStats tiled = unwrap(soup, options).stats;
+    EXPECT_LT(tiled.padding_share.value(), 0.6 * single) << "charts are larger";
+    EXPECT_LE(tiled.used + tiled.padding_share.value(), 1.0);
+}
+
 TEST(Unwrap, HasTheRequestedDensity) {
     UnwrapOptions options;
     options.texels_per_unit = 20.0;

@@ -79,7 +79,16 @@ struct AtlasStats {
     double seam_length = 0.0;      ///< Of the borders of charts, in units of the mesh.
     /// The seam length divided by the root of the area.
     double relative_seam_length = 0.0;
-    double area = 0.0;  ///< Of the surface, in square units of the mesh.
+    double area = 0.0;       ///< Of the surface, in square units of the mesh.
+    double perimeter = 0.0;  ///< Of all charts in the map, in texels.
+    /// The share of all tiles that half of the padding takes around each chart: p g / 2 + pi g^2 /
+    /// 4 texels for a perimeter p and a padding g. It is exact for convex charts, so that these
+    /// cover at most 1 - padding_share, however well they are packed; charts with narrow bays need
+    /// less. Absent for coordinates that are only measured.
+    std::optional<double> padding_share = std::nullopt;
+    /// The highest mip level in which bilinear lookups in one chart do not reach another one: level
+    /// k needs a distance of 3 * 2^k texels. Absent if not even level 0 is safe.
+    std::optional<int> safe_mip_level = std::nullopt;
 };
 
 struct Unwrapped {
