@@ -45,7 +45,7 @@ set(RELIEF_NEEDED_BY_c mesh atlas bake)
 set(RELIEF_LIBRARIES_c -lstdc++ -lm)
 set(RELIEF_NEEDED_BY_shade files)
 set(RELIEF_NEEDED_BY_reference shade bake)
-set(RELIEF_NEEDED_BY_accuracy reference topology)
+set(RELIEF_NEEDED_BY_accuracy reference topology atlas)
 
 set(RELIEF_COMPONENTS "${RELIEF_ALL}" CACHE STRING "Components to build; those that they need are added")
 set(RELIEF_BUILT ${RELIEF_COMPONENTS})

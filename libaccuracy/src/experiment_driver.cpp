@@ -262,6 +262,7 @@ constexpr std::array subject_entries = {
     SubjectEntry{Subject::compression, compression_plan},
     SubjectEntry{Subject::bake, bake_plan},
     SubjectEntry{Subject::decimation, decimation_plan},
+    SubjectEntry{Subject::unwrapping, unwrapping_plan},
     SubjectEntry{Subject::shading, shading_plan, true},
     SubjectEntry{Subject::stability, stability_plan},
 };

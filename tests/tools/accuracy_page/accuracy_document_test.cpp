@@ -173,7 +173,7 @@ TEST(AccuracyDocument, HoldsTheStoredFiguresOfTheExperiments) {
         EXPECT_TRUE(methods == 0 || methods >= 4) << id;
         compared += methods > 0 ? 1 : 0;
     }
-    EXPECT_EQ(compared, 8U) << "an experiment of the page was not found";
+    EXPECT_EQ(compared, 9U) << "an experiment of the page was not found";
 }
 
 /// Returns the commands with a recommendation in the page.

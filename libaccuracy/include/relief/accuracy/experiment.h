@@ -35,6 +35,7 @@ enum class Subject {
     compression,
     bake,
     decimation,
+    unwrapping,
     shading,
     stability
 };
@@ -51,6 +52,7 @@ inline constexpr auto enum_names<accuracy::Subject> =
                                                 {"compression", accuracy::Subject::compression},
                                                 {"bake", accuracy::Subject::bake},
                                                 {"decimation", accuracy::Subject::decimation},
+                                                {"unwrapping", accuracy::Subject::unwrapping},
                                                 {"shading", accuracy::Subject::shading},
                                                 {"stability", accuracy::Subject::stability}});
 

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: Apache-2.0
+// Unwraps a smooth, a noisy and a sharp-edged surface by different options, and measures the
+// stretch, the unused texels, the time and the memory.
+#include "unwrapping_experiments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "portable_math.h"
+#include "relief/mesh/unwrap.h"
+
+namespace relief::accuracy::detail {
+using namespace relief::detail;
+
+namespace {
+
+/// Returns a number whose distribution is close to the normal one, of mean 0 and deviation 1.
+double normal_number(std::uint32_t seed) {
+    Random random(seed);
+    double sum = -6.0;
+    for (int i = 0; i < 12; ++i)
+        sum += random.between(0.0, 1.0);
+    return sum;
+}
+
+}  // namespace
+
+Mesh wavy_sphere(int cells, double noise) {
+    const auto n = static_cast<std::uint32_t>(cells);
+    // Steps of equal angles; exactly symmetric, so that the sides of the cube have common edges.
+    std::vector<double> steps(n + 1, 0.0);
+    for (std::uint32_t i = 0; 2 * i < n; ++i) {
+        const double angle = std::numbers::pi / 4.0 * (1.0 - 2.0 * i / static_cast<double>(n));
+        steps[i] = i == 0 ? -1.0 : -portable::tan(angle);
+        steps[n - i] = -steps[i];
+    }
+    const auto position = [&](const glm::uvec3& place) {
+        const glm::dvec3 p =
+            glm::normalize(glm::dvec3(steps[place.x], steps[place.y], steps[place.z]));
+        const auto waves = [&](const glm::dvec3& frequency, const glm::dvec3& phase) {
+            const glm::dvec3 angles = frequency * p + phase;
+            return portable::sin(angles.x) * portable::sin(angles.y) * portable::sin(angles.z);
+        };
+        const std::uint32_t seed = place.x + (place.y << 10) + (place.z << 20);
+        const double radius = 1.0 + 0.08 * waves({7, 6, 8}, {1, 2, 0.5}) +
+                              0.03 * waves({23, 19, 21}, {0, 1, 2}) + noise * normal_number(seed);
+        return glm::vec3(radius * p);
+    };
+    Mesh mesh;
+    for (std::uint32_t side = 0; side < 6; ++side) {
+        const auto axis = static_cast<glm::length_t>(side / 2);
+        const bool is_far = side % 2 == 1;
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        for (std::uint32_t j = 0; j <= n; ++j) {
+            for (std::uint32_t i = 0; i <= n; ++i) {
+                glm::uvec3 place;
+                place[axis] = is_far ? n : 0;
+                place[(axis + 1) % 3] = i;
+                place[(axis + 2) % 3] = is_far ? j : n - j;
+                mesh.positions.push_back(position(place));
+                const glm::dvec2 square(side % 3, side / 3);
+                const glm::dvec2 inside(i / static_cast<double>(n),
+                                        1.0 - j / static_cast<double>(n));
+                mesh.texcoords.emplace_back((square + 0.02 + 0.96 * inside) / glm::dvec2(3.0, 2.0));
+            }
+        }
+        for (std::uint32_t j = 0; j < n; ++j) {
+            for (std::uint32_t i = 0; i < n; ++i) {
+                const std::uint32_t corner = first + j * (n + 1) + i;
+                mesh.triangles.emplace_back(corner, corner + 1, corner + n + 2);
+                mesh.triangles.emplace_back(corner, corner + n + 2, corner + n + 1);
+            }
+        }
+    }
+    return mesh;
+}
+
+Mesh gear_wheel(int teeth, int cells) {
+    constexpr double half_thickness = 0.2;
+    const auto n = static_cast<std::uint32_t>(cells);
+    std::vector<glm::dvec2> outline;
+    for (int corner = 0; corner < 4 * teeth; ++corner) {
+        const auto at = [&](int index) {
+            const double angle = 2.0 * std::numbers::pi * index / (4.0 * teeth);
+            const double radius = index % 4 < 2 ? 1.0 : 0.8;
+            return radius * glm::dvec2(portable::cos(angle), portable::sin(angle));
+        };
+        const glm::dvec2 from = at(corner);
+        const glm::dvec2 to = at((corner + 1) % (4 * teeth));
+        for (std::uint32_t i = 0; i < n; ++i)
+            outline.push_back(glm::mix(from, to, i / static_cast<double>(n)));
+    }
+    // Rings from the middle of the lower side over the flanks to the middle of the upper side.
+    const auto around = static_cast<std::uint32_t>(outline.size());
+    const std::uint32_t rings = 3 * n;
+    Mesh mesh;
+    mesh.positions.emplace_back(0.0, 0.0, -half_thickness);
+    for (std::uint32_t ring = 1; ring < rings; ++ring) {
+        const double scale =
+            std::min({1.0, ring / static_cast<double>(n), (rings - ring) / static_cast<double>(n)});
+        const double height =
+            half_thickness *
+            (2.0 * (std::clamp(ring, n, 2 * n) - n) / static_cast<double>(n) - 1.0);
+        for (const glm::dvec2& point : outline)
+            mesh.positions.emplace_back(scale * point.x, scale * point.y, height);
+    }
+    mesh.positions.emplace_back(0.0, 0.0, half_thickness);
+    const auto last = static_cast<std::uint32_t>(mesh.positions.size() - 1);
+    for (std::uint32_t i = 0; i < around; ++i) {
+        const std::uint32_t next = (i + 1) % around;
+        mesh.triangles.emplace_back(0, 1 + next, 1 + i);
+        mesh.triangles.emplace_back(last, last - around + i, last - around + next);
+        for (std::uint32_t ring = 1; ring + 1 < rings; ++ring) {
+            const std::uint32_t lower = 1 + (ring - 1) * around;
+            const std::uint32_t upper = lower + around;
+            mesh.triangles.emplace_back(lower + i, lower + next, upper + next);
+            mesh.triangles.emplace_back(lower + i, upper + next, upper + i);
+        }
+    }
+    return mesh;
+}
+
+ErrorStats stretch_errors(const Mesh& mesh, std::span<const glm::vec2> corner_texcoords,
+                          const glm::ivec2& size) {
+    constexpr std::size_t count = 20'000;
+    struct Triangle {
+        double end = 0.0;  ///< The sum of the areas up to here.
+        double largest = 0.0;
+        double smallest = 0.0;  ///< Singular values, texels per unit.
+    };
+    std::vector<Triangle> triangles;
+    double area = 0.0;
+    double texels = 0.0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const glm::uvec3& v = mesh.triangles[t];
+        const glm::dvec3 origin(mesh.positions[v.x]);
+        const glm::dvec3 first = glm::dvec3(mesh.positions[v.y]) - origin;
+        const glm::dvec3 second = glm::dvec3(mesh.positions[v.z]) - origin;
+        const double length = glm::length(first);
+        const double height = glm::length(glm::cross(first, second)) / length;
+        if (!(length > 0.0 && height > 0.0)) continue;
+        const double along = glm::dot(first, second) / length;
+        const auto texel = [&](std::size_t corner) {
+            return glm::dvec2(corner_texcoords[3 * t + corner]) * glm::dvec2(size);
+        };
+        // The columns of the map from an orthonormal basis of the triangle to texels.
+        const glm::dvec2 x = (texel(1) - texel(0)) / length;
+        const glm::dvec2 y = (texel(2) - texel(0) - along * x) / height;
+        const double squares = glm::dot(x, x) + glm::dot(y, y);
+        const double product = std::abs(x.x * y.y - x.y * y.x);
+        const double sum = std::sqrt(squares + 2.0 * product);
+        const double difference = std::sqrt(std::max(squares - 2.0 * product, 0.0));
+        area += 0.5 * length * height;
+        texels += 0.5 * length * height * product;
+        triangles.push_back({area, 0.5 * (sum + difference), 0.5 * (sum - difference)});
+    }
+    const double density = std::sqrt(texels / area);
+    std::vector<float> errors;
+    std::size_t t = 0;
+    for (std::size_t i = 0; i < count && !triangles.empty(); ++i) {
+        const double place = (static_cast<double>(i) + 0.5) / static_cast<double>(count) * area;
+        while (t + 1 < triangles.size() && triangles[t].end < place)
+            ++t;
+        const Triangle& one = triangles[t];
+        const double factor = one.smallest > 0.0
+                                  ? std::max(one.largest / density, density / one.smallest)
+                                  : std::numeric_limits<double>::quiet_NaN();
+        errors.push_back(static_cast<float>(100.0 * (factor - 1.0)));
+    }
+    return error_stats(std::move(errors));
+}
+
+namespace {
+
+/// A choice of options.
+struct UnwrappingMethod {
+    std::string name;
+    std::string options_text;  ///< Of relief-mesh unwrap.
+    UnwrapOptions options;
+    bool needs_texcoords = false;
+};
+
+std::vector<UnwrappingMethod> chart_methods(int size) {
+    UnwrapOptions usual;
+    usual.size = glm::ivec2(size);
+    std::vector<UnwrappingMethod> methods = {{"existing charts", "--repack", usual, true},
+                                             {"default", "none", usual},
+                                             {"keep seams", "--keep-seams", usual, true},
+                                             {"split hard edges", "--split-hard 30", usual}};
+    methods[0].options.repack = true;
+    methods[2].options.keep_seams = true;
+    methods[3].options.split_hard = std::numbers::pi / 6.0;
+    for (const double limit : {1.5, 1.2, 1.1}) {
+        methods.push_back(
+            {fmt::format("within {}", limit), fmt::format("--max-stretch {}", limit), usual});
+        methods.back().options.max_stretch = limit;
+    }
+    return methods;
+}
+
+std::vector<UnwrappingMethod> packing_methods(int size) {
+    UnwrapOptions usual;
+    usual.size = glm::ivec2(size);
+    std::vector<UnwrappingMethod> methods;
+    for (const int padding : {0, 2, 4, 8, 16}) {
+        methods.push_back(
+            {fmt::format("padding {}", padding), fmt::format("--padding {}", padding), usual});
+        methods.back().options.padding = padding;
+    }
+    methods.push_back({"padding 4, blocks of 4", "--align 4", usual});
+    methods.back().options.alignment = 4;
+    methods.push_back(
+        {"padding 4, four tiles", fmt::format("--size {} --udim 4", size / 2), usual});
+    methods.back().options.size /= 2;
+    methods.back().options.tiles = 4;
+    return methods;
+}
+
+std::string note_on(const AtlasStats& stats) {
+    return fmt::format("{} {}, {:.1f} % used, seams {:.3g} times the root of the area",
+                       stats.charts, stats.charts == 1 ? "chart" : "charts", 100.0 * stats.used,
+                       stats.relative_seam_length);
+}
+
+/// Sets all but the errors and the work of methods.
+PreparedExperiment unwrapping_of(const Mesh& mesh, const std::string& description, int size) {
+    PreparedExperiment prepared;
+    prepared.report.input = fmt::format("{}, {} triangles, for {} x {} texels", description,
+                                        mesh.triangles.size(), size, size);
+    prepared.report.error_unit = "%";
+    prepared.report.item = "triangle";
+    prepared.report.items = static_cast<double>(mesh.triangles.size());
+    prepared.costs.memory = false;
+    return prepared;
+}
+
+void add_unwrapping(PreparedExperiment& prepared, const std::shared_ptr<const Mesh>& mesh,
+                    const UnwrappingMethod& method, bool measures_stretch) {
+    prepared.methods.push_back(
+        {.name = method.name,
+         .choices = {{"options", method.options_text}},
+         .error =
+             [mesh, method, measures_stretch] {
+                 const Unwrapped result = unwrap(*mesh, method.options);
+                 const auto unused = static_cast<float>(100.0 * (1.0 - result.stats.used));
+                 return MethodError(
+                     measures_stretch
+                         ? stretch_errors(*mesh, result.corner_texcoords, method.options.size)
+                         : error_stats({unused}),
+                     note_on(result.stats));
+             },
+         .work = [mesh, method] { unwrap(*mesh, method.options); }});
+}
+
+/// The unused texels and the part of them that the padding takes, over the padding.
+Chart padding_chart(const Mesh& mesh, int size) {
+    Chart chart{.id = "padding",
+                .title = "More padding",
+                .x_label = "padding, texels",
+                .y_label = "texels that charts do not cover, %",
+                .curves = {{.method = "unused"}, {.method = "padding alone"}}};
+    for (const int padding : {1, 2, 4, 8, 16}) {
+        UnwrapOptions options;
+        options.size = glm::ivec2(size);
+        options.padding = padding;
+        const AtlasStats stats = unwrap(mesh, options).stats;
+        chart.curves[0].points.push_back({1.0 * padding, 100.0 * (1.0 - stats.used)});
+        chart.curves[1].points.push_back(
+            {1.0 * padding, 100.0 * stats.padding_share.value_or(0.0)});
+    }
+    return chart;
+}
+
+PreparedExperiment unwrapping_texels(Mesh given, const std::string& description, int size) {
+    const auto mesh = std::make_shared<const Mesh>(std::move(given));
+    PreparedExperiment prepared = unwrapping_of(*mesh, description, size);
+    prepared.report.question = "How many texels of the map stay unused?";
+    prepared.report.ground_truth =
+        "A map that charts cover completely. Tests compare the covered area with the sum of the "
+        "areas of all triangles, which do not overlap.";
+    for (const UnwrappingMethod& method : packing_methods(size))
+        add_unwrapping(prepared, mesh, method, false);
+    prepared.finish = [mesh, size](Experiment& report) {
+        report.charts = {padding_chart(*mesh, size)};
+    };
+    return prepared;
+}
+
+PreparedExperiment unwrapping_of_large_mesh(bool is_quick) {
+    const int size = is_quick ? 512 : 2048;
+    const auto mesh = std::make_shared<const Mesh>(wavy_sphere(is_quick ? 32 : 289, 0.0));
+    PreparedExperiment prepared = unwrapping_of(*mesh, "sphere with waves", size);
+    prepared.report.question = "How much time and memory does the unwrapping of a large mesh cost?";
+    prepared.report.ground_truth =
+        "The same lengths on the surface, at the mean density of texels.";
+    prepared.costs.memory = true;
+    for (const UnwrappingMethod& method : chart_methods(size))
+        if (method.name == "default" || method.name == "keep seams")
+            add_unwrapping(prepared, mesh, method, true);
+    return prepared;
+}
+
+}  // namespace
+
+PreparedExperiment unwrapping_stretch(Mesh given, const std::string& description, int size) {
+    const auto mesh = std::make_shared<const Mesh>(std::move(given));
+    PreparedExperiment prepared = unwrapping_of(*mesh, description, size);
+    prepared.report.question = "Which options stretch the surface least, and what do they cost?";
+    prepared.report.ground_truth =
+        "The same lengths on the surface, at the mean density of texels. The error is how much "
+        "longer or shorter a line becomes in the map at most, at points that are spread evenly "
+        "over the surface. Tests verify it for maps with a known stretch.";
+    for (const UnwrappingMethod& method : chart_methods(size))
+        if (!method.needs_texcoords || !mesh->texcoords.empty())
+            add_unwrapping(prepared, mesh, method, true);
+    return prepared;
+}
+
+std::vector<PlannedExperiment> unwrapping_plan(const PlanOptions& options) {
+    const bool is_quick = options.is_quick;
+    const int size = is_quick ? 512 : 2048;
+    const int cells = is_quick ? 16 : 64;
+    const auto noisy = [cells] { return wavy_sphere(cells, 0.002); };
+    return {
+        {"unwrapping/smooth-stretch", Subject::unwrapping, "Unwrapping: smooth surface, stretch",
+         [=] { return unwrapping_stretch(wavy_sphere(cells, 0.0), "sphere with waves", size); }},
+        {"unwrapping/noisy-stretch", Subject::unwrapping, "Unwrapping: noisy surface, stretch",
+         [=] { return unwrapping_stretch(noisy(), "sphere with waves and noise", size); }},
+        {"unwrapping/sharp-stretch", Subject::unwrapping, "Unwrapping: sharp edges, stretch",
+         [=] { return unwrapping_stretch(gear_wheel(12, is_quick ? 3 : 16), "gear", size); }},
+        {"unwrapping/noisy-texels", Subject::unwrapping, "Unwrapping: noisy surface, unused texels",
+         [=] { return unwrapping_texels(noisy(), "sphere with waves and noise", size); }},
+        {"unwrapping/large", Subject::unwrapping, "Unwrapping: a large mesh",
+         [=] { return unwrapping_of_large_mesh(is_quick); }}};
+}
+
+}  // namespace relief::accuracy::detail
