@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Texture coordinates for spheres with waves of growing size, with the time of each stage, the
-// slope and the memory: `relief-unwrap-bench [TRIANGLES... ]`. `relief-unwrap-bench files FILE...`
-// does so for models. `relief-unwrap-bench reference LIBRARY [FILE...]` compares with another
-// library behind the function of bench/peers, in interleaved rounds; both results are judged by
-// measure_texcoords(). All times are processor times, so that other programs do not add to them.
+// slope and the memory: `relief-unwrap-bench [TRIANGLES...]`. `relief-unwrap-bench files FILE...`
+// does so for models (.obj, .ply, .stl, .off). `relief-unwrap-bench reference LIBRARY [FILE...]`
+// compares with another library behind the function of bench/peers, in interleaved rounds; both
+// results are judged by measure_texcoords(). All times are processor times, so that other programs
+// do not add to them.
 #include <dlfcn.h>
 #include <fmt/format.h>
 
@@ -255,5 +256,10 @@ int run(int argc, char** argv) {
 }  // namespace relief::bench
 
 int main(int argc, char** argv) {
-    return relief::bench::run(argc, argv);
+    try {
+        return relief::bench::run(argc, argv);
+    } catch (const relief::Error& error) {
+        fmt::print(stderr, "relief-unwrap-bench: error: {}\n", error.what());
+        return 1;
+    }
 }

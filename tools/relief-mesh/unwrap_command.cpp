@@ -384,9 +384,17 @@ void add_unwrap_options(CLI::App& app, UnwrapCommand& command) {
     add_general_options(app, command.general);
     set_examples(app, {"relief-mesh unwrap data/vase.obj out/vase-unwrapped.obj",
                        "relief-mesh unwrap data/vase.obj out/vase-unwrapped.glb --size 1024 "
-                       "--padding 8 --split-hard 60",
+                       "--padding 8 --split-hard 60 --split-materials --max-stretch 2",
                        "relief-mesh unwrap data/vase.obj out/vase-unwrapped.ply --size 2048x1024 "
-                       "--align 4 --picture out/vase-charts.png",
+                       "--align 4 --picture out/vase-charts.png --picture-shows stretch",
+                       "relief-mesh unwrap data/vase.obj out/vase-tiles.obj --size 512 --udim 4 "
+                       "--report out/vase-tiles.json",
+                       "relief-mesh unwrap data/vase.obj out/vase-dense.obj --density bricks=2 "
+                       "--texels-per-unit 100 --stack",
+                       "relief-mesh unwrap data/vase.obj out/vase-seams.glb --keep-seams "
+                       "--remove-textures",
+                       "relief-mesh unwrap data/vase.obj out/vase-repacked.obj --repack "
+                       "--fix-mirrored --size 512 --padding 12",
                        "relief-mesh unwrap out/vase-unwrapped.glb out/vase-two-sets.glb --uv-set "
                        "1"});
 }
