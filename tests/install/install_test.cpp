@@ -419,7 +419,7 @@ TEST(SharedComponents, LinkWithTheExportsOfEachOther) {
          "-lrelief_shade -lrelief_bake -lrelief_files -lrelief_mesh -l" RELIEF_EMBREE},
         {"accuracy", "libaccuracy",
          "-lrelief_reference -lrelief_shade -lrelief_bake -lrelief_files -lrelief_topology "
-         "-lrelief_mesh -l" RELIEF_EMBREE},
+         "-lrelief_atlas -lrelief_mesh -l" RELIEF_EMBREE},
     };
     const TemporaryDirectory folder;
     for (const Component& component : components) {
