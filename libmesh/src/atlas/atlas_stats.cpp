@@ -109,14 +109,17 @@ AtlasStats stats_of(const AtlasSurface& surface, std::span<const glm::vec2> corn
     AtlasStats stats;
     stats.charts = charts.count;
     const std::vector<std::uint32_t> triangles = triangles_of_faces(surface);
-    struct Measured {
-        std::uint32_t face;
-        double anisotropy;
-    };
-    std::vector<Measured> measured;
-    std::vector<std::pair<double, double>> densities;
-    std::vector<double> chart_texels(charts.count, 0.0);
     double area = 0.0;
+    std::size_t measured = 0;
+    for (std::uint32_t face = 0; face < surface.faces.size(); ++face) {
+        if (charts.chart[face] == no_face) continue;
+        area += surface.areas[face];
+        ++measured;
+    }
+    const double min_area = min_area_share(surface.faces.size()) * area;
+    std::vector<std::pair<double, double>> densities;
+    densities.reserve(measured);
+    std::vector<double> chart_texels(charts.count, 0.0);
     for (std::uint32_t face = 0; face < surface.faces.size(); ++face) {
         if (charts.chart[face] == no_face) continue;
         const Stretch stretch =
@@ -124,18 +127,14 @@ AtlasStats stats_of(const AtlasSurface& surface, std::span<const glm::vec2> corn
         const double smallest = std::abs(stretch.smallest);
         const double weight = surface.areas[face];
         chart_texels[charts.chart[face]] += weight * stretch.largest * smallest;
-        area += weight;
         densities.emplace_back(std::sqrt(stretch.largest * smallest), weight);
         stats.stretch += 0.5 * weight *
                          (1.0 / (stretch.largest * stretch.largest) + 1.0 / (smallest * smallest));
         const double anisotropy = stretch.largest / smallest;
         stats.mean_anisotropy += weight * anisotropy;
-        measured.push_back({face, anisotropy});
+        if (weight >= min_area) stats.max_anisotropy = std::max(stats.max_anisotropy, anisotropy);
     }
     if (!(area > 0.0)) return stats;
-    for (const Measured& each : measured)
-        if (surface.areas[each.face] >= min_area_share(surface.faces.size()) * area)
-            stats.max_anisotropy = std::max(stats.max_anisotropy, each.anisotropy);
     double map_area = 0.0;
     for (const double texels : chart_texels) {
         map_area += texels;
