@@ -382,6 +382,10 @@ py::tuple py_decimated(const MeshObject& mesh, std::optional<std::size_t> triang
     options.keep_seams = keep_seams;
     options.fit_positions = !keep_positions;
     options.weights = weights_of(weights);
+    if (max_error) {
+        options.goal = DecimateGoal::distance;
+        if (!weights.contains("normals")) options.weights.normal = 0.0;
+    }
     options.frames.normals = value_of<NormalMode>(normals, "normals");
     Report findings;
     FramedMesh framed = without_gil([&] { return decimated(mesh, options, findings); });

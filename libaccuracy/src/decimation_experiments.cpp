@@ -103,6 +103,7 @@ std::vector<DecimationMethod> decimation_methods() {
 /// Decimates a mesh to a part of its triangles: one of `part`.
 Mesh decimated_by(const DecimationMethod& method, const Mesh& mesh, std::size_t part) {
     DecimateOptions options;
+    options.goal = DecimateGoal::distance;
     options.weights.normal = method.normal_weight;
     options.keep_seams = method.keeps_seams;
     options.fit_positions = !method.keeps_positions;

@@ -11,6 +11,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,6 +39,16 @@ void add_distances(DistanceStats& all, const DistanceStats& one) {
     all.max = std::max(all.max, one.max);
     all.max_degrees = std::max(all.max_degrees, one.max_degrees);
     all.omitted += one.omitted;
+}
+
+/// Converts distances of a mesh to those in the scene.
+SurfaceDistance scaled(SurfaceDistance distance, double scale) {
+    for (DistanceStats* stats : {&distance.from_a, &distance.from_b}) {
+        for (double* length : {&stats->mean, &stats->rms, &stats->max})
+            *length *= scale;
+        stats->area *= scale * scale;
+    }
+    return distance;
 }
 
 }  // namespace
@@ -98,6 +109,7 @@ struct Reshaped {
 struct SurfacePair {
     Mesh before;
     FramedMesh after;
+    double scale = 1.0;  ///< The length of its unit in the scene.
 };
 
 /// Selects whether the distance between IN and OUT is measured.
@@ -107,7 +119,7 @@ enum class Measuring { off, on };
 struct Reshaping {
     std::string verb;  ///< "decimate", the name of the stage.
     NormalMode normals = NormalMode::keep;
-    TriangleChange change;
+    ModelChange change;
     Measuring measuring = Measuring::off;
     std::optional<std::size_t> max_triangles{};  ///< --triangles
 };
@@ -119,11 +131,13 @@ Reshaped run(const Job& job, const Reshaping& reshaping, Stages& stages) {
     Model model = stages.run("read", [&] { return read_model(job.input, read_report); });
     done.findings.add("", read_report);
     std::vector<SurfacePair> pairs;
-    const TriangleChange kept_change = [&](const TriangleInput& given, Report& report) {
-        FramedMesh changed = reshaping.change(given, report);
-        if (reshaping.measuring == Measuring::on)
-            pairs.push_back({without_attributes(given.mesh),
-                             {without_attributes(changed.mesh), changed.source_vertex}});
+    const ModelChange kept_change = [&](std::span<const TriangleInput> meshes,
+                                        std::span<Report> reports, Report& whole) {
+        std::vector<FramedMesh> changed = reshaping.change(meshes, reports, whole);
+        for (std::size_t i = 0; i < meshes.size() && reshaping.measuring == Measuring::on; ++i)
+            pairs.push_back({without_attributes(meshes[i].mesh),
+                             {without_attributes(changed[i].mesh), changed[i].source_vertex},
+                             meshes[i].scale});
         return changed;
     };
     done.changed = stages.run(reshaping.verb, [&] {
@@ -138,7 +152,8 @@ Reshaped run(const Job& job, const Reshaping& reshaping, Stages& stages) {
         done.distance = stages.run("measure", [&] {
             std::vector<SurfaceDistance> distances;
             for (const SurfacePair& pair : pairs) {
-                distances.push_back(surface_distance(pair.before, pair.after.mesh));
+                distances.push_back(
+                    scaled(surface_distance(pair.before, pair.after.mesh), pair.scale));
                 const double angle = max_corner_angle(pair.before, pair.after);
                 done.corner_angle = std::max(done.corner_angle, angle * 180.0 / std::numbers::pi);
             }
@@ -267,7 +282,7 @@ ExitCode reshape_all(const CLI::App& app, const ReshapeRequest& request, const J
 ///
 /// \param options  the command's options for the report
 /// \throws UsageError, FileError; then no file is written
-ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const TriangleChange& change,
+ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const ModelChange& change,
                  Measuring measuring, const Json& options,
                  std::optional<std::size_t> max_triangles = std::nullopt) {
     const JobList list = model_jobs_of(request.words, request.format);
@@ -285,6 +300,8 @@ struct DecimateCommand {
     DecimateOptions options = default_options();  ///< `triangles` is that of all meshes.
     std::optional<double> ratio;
     std::optional<double> max_normal_degrees;  ///< --max-normal-error
+    std::optional<DecimateGoal> goal;          ///< --for
+    bool has_normal_weight = false;            ///< --weights names normals.
 
     static DecimateOptions default_options() {
         DecimateOptions options;
@@ -306,8 +323,9 @@ constexpr std::array weight_words = {WeightWord{"texcoords", &AttributeWeights::
                                      WeightWord{"targets", &AttributeWeights::target}};
 
 /// Parses "normals=0.1,colors=0.01". Attributes that are not named keep their weight.
-AttributeWeights parse_weights(const std::string& subject, const std::string& text) {
-    AttributeWeights weights;
+void parse_weights(const std::string& subject, const std::string& text, DecimateCommand& command) {
+    AttributeWeights& weights = command.options.weights;
+    weights = {};
     std::vector<std::string_view> given;
     for (const std::string& part : split(text, ',')) {
         const std::string here = fmt::format("{}: '{}'", subject, part);
@@ -326,7 +344,7 @@ AttributeWeights parse_weights(const std::string& subject, const std::string& te
         weights.*(known->weight) =
             parse_number(here, part.substr(equals + 1), {0.0, Range().max, ""});
     }
-    return weights;
+    command.has_normal_weight = std::find(given.begin(), given.end(), "normals") != given.end();
 }
 
 /// Parses "0.5" or "50%".
@@ -341,23 +359,13 @@ void check_limits(const DecimateCommand& command) {
         throw UsageError("--triangles and --ratio contradict each other", "give one of them");
     if (!command.options.triangles && !command.ratio && !command.options.max_error)
         throw UsageError("no limit is given", "give --triangles N, --ratio R or --max-error E");
-    if (command.options.weights.normal > 0.0 && command.request.normals != NormalMode::keep) {
+    if (command.has_normal_weight && command.options.weights.normal > 0.0 &&
+        command.request.normals != NormalMode::keep) {
         throw UsageError(
             fmt::format("--weights normals: has no effect with --normals {}, which replaces them",
                         enum_name(command.request.normals)),
             "leave one of them out");
     }
-}
-
-/// Returns the number of triangles for one of several meshes, in proportion to its size.
-std::optional<std::size_t> wanted_triangles(const DecimateCommand& command, std::size_t count,
-                                            std::size_t all) {
-    if (!command.options.triangles && !command.ratio) return std::nullopt;
-    const double ratio = command.ratio ? *command.ratio
-                                       : static_cast<double>(*command.options.triangles) /
-                                             static_cast<double>(std::max<std::size_t>(all, 1));
-    const double wanted = std::round(ratio * static_cast<double>(count));
-    return static_cast<std::size_t>(std::max(wanted, 1.0));
 }
 
 Json options_json(const DecimateCommand& command) {
@@ -367,6 +375,8 @@ Json options_json(const DecimateCommand& command) {
     if (command.ratio) json["ratio"] = *command.ratio;
     if (options.max_error) json["max_error"] = *options.max_error;
     if (command.max_normal_degrees) json["max_normal_error"] = *command.max_normal_degrees;
+    if (options.drop_parts > 0.0) json["drop_parts"] = options.drop_parts;
+    json["for"] = enum_name(options.goal);
     json["keep_borders"] = options.keep_borders;
     json["keep_seams"] = options.keep_seams;
     json["keep_positions"] = !options.fit_positions;
@@ -378,16 +388,34 @@ Json options_json(const DecimateCommand& command) {
     return json;
 }
 
-ExitCode decimate(const CLI::App& app, const DecimateCommand& command) {
-    check_limits(command);
-    const auto change = [&](const TriangleInput& input, Report& report) {
+/// Sets the goal: distances if they are limited and nothing else is requested.
+DecimateCommand with_goal(DecimateCommand command) {
+    command.options.goal = command.goal.value_or(command.options.max_error ? DecimateGoal::distance
+                                                                           : DecimateGoal::picture);
+    if (command.options.goal == DecimateGoal::distance && !command.has_normal_weight)
+        command.options.weights.normal = 0.0;
+    return command;
+}
+
+ExitCode decimate(const CLI::App& app, const DecimateCommand& given) {
+    check_limits(given);
+    const DecimateCommand command = with_goal(given);
+    const ModelChange change = [&](std::span<const TriangleInput> meshes, std::span<Report> reports,
+                                   Report& whole) {
+        std::vector<SceneMesh> scene;
+        std::size_t triangles = 0;
+        for (const TriangleInput& input : meshes) {
+            scene.push_back({input.mesh, input.deformation, input.scale});
+            triangles += input.mesh.triangles.size();
+        }
         DecimateOptions options = command.options;
-        options.triangles =
-            wanted_triangles(command, input.mesh.triangles.size(), input.all_triangles);
+        if (command.ratio)
+            options.triangles = static_cast<std::size_t>(
+                std::max(std::round(*command.ratio * static_cast<double>(triangles)), 1.0));
         options.frames.normals = command.request.normals;
         if (command.max_normal_degrees)
             options.max_normal_error = *command.max_normal_degrees * std::numbers::pi / 180.0;
-        return decimated(input.mesh, options, report, input.deformation);
+        return decimated(scene, options, reports, whole);
     };
     const bool reports = !command.request.general.quiet || command.request.report.file;
     return reshape(app, command.request, change, reports ? Measuring::on : Measuring::off,
@@ -401,13 +429,15 @@ void add_decimate_options(CLI::App& app, DecimateCommand& command) {
         "like seams, or recomputed, with hard edges ignored. Default: keep.");
     const std::string limits = "Limits; the first one reached ends the decimation";
     add_value(app, "--triangles", "N",
-              "Stop at N triangles in total. Several meshes are reduced by the same ratio.",
+              "Stop at N triangles in the file. They are left where they are needed most, in "
+              "the scale of the scene.",
               [&command](const std::string& subject, const std::string& text) {
                   command.options.triangles = static_cast<std::size_t>(
                       parse_integer(subject, text, 1, std::numeric_limits<int>::max()));
               })
         .group(limits);
-    add_value(app, "--ratio", "R", "Stop at this fraction of the triangles: 0 to 1, or 0% to 100%.",
+    add_value(app, "--ratio", "R",
+              "Stop at this fraction of the triangles of the file: 0 to 1, or 0% to 100%.",
               [&command](const std::string& subject, const std::string& text) {
                   command.ratio = parse_ratio(subject, text);
               })
@@ -415,10 +445,18 @@ void add_decimate_options(CLI::App& app, DecimateCommand& command) {
     add_number(
         app, "--max-error", "E", command.options.max_error, {0.0, Range().max, ""},
         "Maximum distance: stop while no point of IN is farther than E from OUT, and no point "
-        "of OUT farther than E from IN, in the unit of the model (relief-mesh info prints "
+        "of OUT farther than E from IN, in the unit of the scene (relief-mesh info prints "
         "its size). The distance is measured several times, so this takes longer.")
         .group(limits);
+    add_choice(app, "--for", command.goal, enum_choices<DecimateGoal>(),
+               "What OUT is to resemble IN in: in pictures of the scene, where normals count too, "
+               "or in distances. Default: distance with --max-error, otherwise picture.")
+        .group("What is preserved");
     const std::string preserved = "What is preserved";
+    add_number(app, "--drop-parts", "SIZE", command.options.drop_parts, {0.0, Range().max, ""},
+               "Remove connected parts whose bounding box has a diagonal shorter than this, in the "
+               "unit of the scene. Default: no part is removed.")
+        .group(preserved);
     add_number(
         app, "--max-normal-error", "DEGREES", command.max_normal_degrees, {0.001, 180.0, "degrees"},
         "Omit collapses that would turn a triangle by more than this angle from the triangles "
@@ -437,14 +475,16 @@ void add_decimate_options(CLI::App& app, DecimateCommand& command) {
         "IN best, which about halves the distance on curved surfaces.",
         [&command] { command.options.fit_positions = false; })
         .group(preserved);
-    add_value(app, "--weights", "NAME=W,...",
-              "How much differences of attributes count, each at least 0: texcoords, in lengths on "
-              "the surface (default: 1); normals, colors and joints (the weights of skins), as the "
-              "fraction of the model's size that a difference of 1 counts (default: 0, 0.01 and "
-              "0.01); targets, displacements by morph targets, as lengths (default: 1).",
-              [&command](const std::string& subject, const std::string& text) {
-                  command.options.weights = parse_weights(subject, text);
-              })
+    add_value(
+        app, "--weights", "NAME=W,...",
+        "How much differences of attributes count, each at least 0: texcoords, in lengths on "
+        "the surface (default: 1); normals, colors and joints (the weights of skins), as the "
+        "fraction of the model's size that a difference of 1 counts (default: 0.005, or 0 with "
+        "--for distance; 0.01 and 0.01); targets, displacements by morph targets, as lengths "
+        "(default: 1).",
+        [&command](const std::string& subject, const std::string& text) {
+            parse_weights(subject, text, command);
+        })
         .group(preserved);
     set_examples(
         app, {"relief-mesh decimate data/vase.obj out/vase-1000.glb --triangles 1000",
@@ -461,10 +501,14 @@ struct SubdivideCommand {
 };
 
 ExitCode subdivide(const CLI::App& app, const SubdivideCommand& command) {
-    const auto change = [&](const TriangleInput& input, Report& report) {
-        return FramedMesh{
-            subdivided(input.mesh, command.levels, {.normals = command.request.normals}, report),
-            {}};
+    const ModelChange change = [&](std::span<const TriangleInput> meshes, std::span<Report> reports,
+                                   Report&) {
+        std::vector<FramedMesh> results;
+        for (std::size_t i = 0; i < meshes.size(); ++i)
+            results.push_back({subdivided(meshes[i].mesh, command.levels,
+                                          {.normals = command.request.normals}, reports[i]),
+                               {}});
+        return results;
     };
     return reshape(app, command.request, change, Measuring::off,
                    {{"levels", command.levels}, {"normals", enum_name(command.request.normals)}});

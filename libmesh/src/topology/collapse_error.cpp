@@ -12,8 +12,8 @@ CollapseError::CollapseError(const CollapseInput& input, const CollapseSurface& 
     : input_(input),
       surface_(surface),
       quadrics_(input.positions.size()),
-      errors_(input.positions.size(), 0.0) {
-    if (input_.max_error) areas_.assign(input.positions.size(), 0.0);
+      errors_(input.positions.size(), 0.0),
+      areas_(input.positions.size(), 0.0) {
     if (input_.attribute_weights.empty()) return;
     sums_per_wedge_ = 1 + 4 * input_.attribute_weights.size();
     attribute_sums_.assign(input_.wedge_count * sums_per_wedge_, 0.0);
@@ -28,7 +28,7 @@ void CollapseError::add_triangle(std::size_t triangle, const glm::dvec3& normal,
     quadric.add(area, normal, -glm::dot(normal, a));
     for (Corner corner = first; corner < first + 3; ++corner) {
         quadrics_[surface_[corner].vertex] += quadric;
-        if (!areas_.empty()) areas_[surface_[corner].vertex] += area;
+        areas_[surface_[corner].vertex] += area;
     }
     if (sums_per_wedge_ > 0) add_attributes(triangle, normal, doubled_area);
 }
@@ -94,7 +94,7 @@ void CollapseError::add_lines(std::size_t triangle) {
 void CollapseError::merge(std::uint32_t vertex, const Move& move) {
     errors_[move.target] += std::max(0.0, own_cost(vertex, move));
     quadrics_[move.target] += quadrics_[vertex];
-    if (!areas_.empty()) areas_[move.target] += areas_[vertex];
+    areas_[move.target] += areas_[vertex];
     if (sums_per_wedge_ > 0) {
         for (std::size_t side = 0; side < 2; ++side) {
             if (move.before[side] == no_corner || (side == 1 && move.before[1] == move.before[0]))
@@ -110,11 +110,14 @@ void CollapseError::merge(std::uint32_t vertex, const Move& move) {
 /// The minimum is the mean height of the planes above the vertex. On a curved surface, triangles
 /// between such vertices still lie below the surface by about half as much (measured on tori), so
 /// the vertex moves on by that. There, a quarter of the quadric remains at the minimum; at a
-/// corner, which the minimum restores exactly, nothing does.
+/// corner, which the minimum restores exactly, nothing does. If the planes are nearly parallel, the
+/// minimum may be far away: an offset of more than four times the error, its root mean square over
+/// the area, is refused.
 glm::dvec3 CollapseError::fitted_offset(std::uint32_t vertex, const Ring& ring) const {
     constexpr double damping = 1e-3;
     constexpr double beyond = 0.55;
     constexpr double remainder_of_curvature = 0.25;
+    constexpr double most = 4.0;
     const Quadric& q = quadrics_[vertex];
     const glm::dvec3 p = input_.point(vertex);
     double before = q(p);
@@ -152,6 +155,7 @@ glm::dvec3 CollapseError::fitted_offset(std::uint32_t vertex, const Ring& ring) 
         -(slope.x * yz + slope.y * glm::cross(row_z, row_x) + slope.z * glm::cross(row_x, row_y)) /
         determinant;
     const double after = before + glm::dot(slope, offset);
+    if (glm::dot(offset, offset) * areas_[vertex] > most * most * before) return glm::dvec3(0.0);
     const double remainder = std::clamp(after / (remainder_of_curvature * before), 0.0, 1.0);
     return (1.0 + beyond * remainder) * offset;
 }

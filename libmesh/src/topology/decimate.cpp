@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decimation: prepares a mesh for edge collapses (edge_collapse.h) and gathers what remains.
-//
-// Positions are scaled into [-1, 1] by a power of two, so the result does not depend on the unit of
-// length. Triangles are visited along a space-filling curve, with ties in the order of their
-// vertices' values, so the result does not depend on the order of triangles.
+// Decimation of one mesh or of the meshes of a scene: runs edge collapses (edge_collapse.h) within
+// the limits and gathers what remains. Tests: tests/mesh/topology/decimate_test.cpp.
 #include "relief/mesh/topology.h"
 
 #include <fmt/format.h>
@@ -20,6 +17,7 @@
 #include <numeric>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -29,6 +27,7 @@
 #include "portable_math.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/report.h"
+#include "topology/collapse_input.h"
 #include "topology/edge_collapse.h"
 #include "topology/topology.h"
 
@@ -57,330 +56,15 @@ void check(const Mesh& mesh, const Deformation& deformation, const DecimateOptio
     if (options.max_normal_error && !(*options.max_normal_error > 0.0))
         throw InvalidInput(fmt::format("the maximum error of normals is {}, but must be above 0",
                                        *options.max_normal_error));
+    if (!(options.drop_parts >= 0.0))
+        throw InvalidInput(fmt::format("the size of parts to drop is {}, but must be at least 0",
+                                       options.drop_parts));
     const AttributeWeights& weights = options.weights;
     for (const double weight :
          {weights.texcoord, weights.normal, weights.color, weights.joint, weights.target}) {
         if (!(weight >= 0.0 && std::isfinite(weight)))
             throw InvalidInput(
                 fmt::format("a weight is {}, but must be finite and at least 0", weight));
-    }
-}
-
-/// Maps object space to [-1, 1]; `scale` is the factor of lengths.
-struct UnitSpace {
-    glm::dvec3 center{0.0};
-    double scale = 1.0;
-
-    [[nodiscard]] glm::dvec3 operator()(const glm::vec3& position) const {
-        return (glm::dvec3(position) - center) * scale;
-    }
-};
-
-UnitSpace unit_space(const Mesh& mesh) {
-    const Bounds bounds = bounds_of(mesh);
-    UnitSpace space;
-    if (bounds.empty()) return space;
-    const glm::dvec3 low(bounds.min);
-    const glm::dvec3 high(bounds.max);
-    space.center = (low + high) / 2.0;
-    const glm::dvec3 half = (high - low) / 2.0;
-    const double longest = std::max({half.x, half.y, half.z});
-    if (longest > 0.0) space.scale = std::ldexp(1.0, -(std::ilogb(longest) + 1));
-    return space;
-}
-
-/// The index of the material range of each triangle; empty if there is at most one.
-struct Parts {
-    std::vector<std::uint32_t> of_triangle;
-
-    [[nodiscard]] std::uint32_t operator[](std::size_t triangle) const {
-        return of_triangle.empty() ? 0 : of_triangle[triangle];
-    }
-};
-
-Parts parts_of(const Mesh& mesh) {
-    if (mesh.material_ranges.size() <= 1) return {};
-    std::vector<std::uint32_t> parts(mesh.triangles.size(), 0);
-    for (std::uint32_t r = 0; r < mesh.material_ranges.size(); ++r) {
-        const MaterialRange& range = mesh.material_ranges[r];
-        std::fill_n(parts.begin() + range.first_triangle, range.triangle_count, r);
-    }
-    return {std::move(parts)};
-}
-
-/// Compares the numbers of two vectors; a NaN is ordered by its bits, and -0 equals +0.
-template <typename Vector>
-std::strong_ordering compare(const Vector& a, const Vector& b) {
-    for (int i = 0; i < Vector::length(); ++i) {
-        const auto left = std::bit_cast<std::int32_t>(a[i] + 0.0F);
-        const auto right = std::bit_cast<std::int32_t>(b[i] + 0.0F);
-        if (left != right) return left <=> right;
-    }
-    return std::strong_ordering::equal;
-}
-
-/// A mesh with the attributes that make seams where they differ.
-struct AttributedMesh {
-    const Mesh& mesh;
-    const Deformation& deformation;
-    bool with_normals = false;
-
-    [[nodiscard]] std::strong_ordering compare_attributes(std::uint32_t a, std::uint32_t b) const {
-        auto order = std::strong_ordering::equal;
-        if (a == b) return order;
-        const auto refine = [&](const auto& values) {
-            if (order == 0 && !values.empty()) order = compare(values[a], values[b]);
-        };
-        refine(mesh.texcoords);
-        refine(mesh.texcoords_2);
-        refine(mesh.colors);
-        if (with_normals) refine(mesh.normals);
-        refine(deformation.joints);
-        for (const auto& displacements : deformation.displacements)
-            refine(displacements);
-        return order;
-    }
-};
-
-/// The corners of a surface that share position, part and attributes. A vertex that several parts
-/// use has a wedge for each.
-struct Wedges {
-    std::vector<std::uint32_t> vertex;  ///< By wedge: the mesh vertex.
-    /// By mesh vertex: its wedge in the first part that uses it.
-    std::vector<std::uint32_t> of_vertex;
-    /// Vertex, part and wedge where a vertex is used by another part too; ascending.
-    std::vector<std::array<std::uint32_t, 3>> others;
-    std::vector<std::uint32_t> first_part;  ///< By mesh vertex; empty with one part.
-
-    [[nodiscard]] std::uint32_t at(std::uint32_t vertex_index, std::uint32_t part) const {
-        if (first_part.empty() || first_part[vertex_index] == part) return of_vertex[vertex_index];
-        const std::array<std::uint32_t, 3> key = {vertex_index, part, 0};
-        return (*std::lower_bound(others.begin(), others.end(), key))[2];
-    }
-};
-
-/// Joins equal wedges at the same position; the one with the lowest index remains.
-Wedges wedges_of(const AttributedMesh& surface, std::span<const std::uint32_t> classes,
-                 const Parts& parts) {
-    const Mesh& mesh = surface.mesh;
-    Wedges wedges;
-    const std::size_t vertices = mesh.positions.size();
-    wedges.vertex.resize(vertices);
-    std::iota(wedges.vertex.begin(), wedges.vertex.end(), 0U);
-    if (mesh.material_ranges.size() > 1) {
-        wedges.first_part.assign(vertices, no_corner);
-        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-            for (int i = 0; i < 3; ++i) {
-                const std::uint32_t v = mesh.triangles[t][i];
-                if (wedges.first_part[v] == no_corner) wedges.first_part[v] = parts[t];
-                if (wedges.first_part[v] != parts[t]) wedges.others.push_back({v, parts[t], 0});
-            }
-        }
-        std::sort(wedges.others.begin(), wedges.others.end());
-        wedges.others.erase(std::unique(wedges.others.begin(), wedges.others.end()),
-                            wedges.others.end());
-        for (auto& other : wedges.others) {
-            other[2] = static_cast<std::uint32_t>(wedges.vertex.size());
-            wedges.vertex.push_back(other[0]);
-        }
-    }
-    // Only positions with several wedges are sorted.
-    std::vector<bool> is_shared(vertices, false);
-    for (std::uint32_t v = 0; v < vertices; ++v) {
-        if (classes[v] != v) is_shared[classes[v]] = true;
-    }
-    for (const auto& other : wedges.others)
-        is_shared[classes[other[0]]] = true;
-    const auto part_at = [&](std::uint32_t wedge) {
-        if (wedge >= vertices) return wedges.others[wedge - vertices][1];
-        return wedges.first_part.empty() ? 0U : wedges.first_part[wedge];
-    };
-    const auto compared = [&](std::uint32_t a, std::uint32_t b) {
-        const std::uint32_t va = wedges.vertex[a];
-        const std::uint32_t vb = wedges.vertex[b];
-        if (classes[va] != classes[vb]) return classes[va] <=> classes[vb];
-        if (part_at(a) != part_at(b)) return part_at(a) <=> part_at(b);
-        return surface.compare_attributes(va, vb);
-    };
-    std::vector<std::uint32_t> sorted;
-    for (std::uint32_t w = 0; w < wedges.vertex.size(); ++w) {
-        if (is_shared[classes[wedges.vertex[w]]]) sorted.push_back(w);
-    }
-    std::sort(sorted.begin(), sorted.end(), [&](std::uint32_t a, std::uint32_t b) {
-        const std::strong_ordering order = compared(a, b);
-        return order == 0 ? a < b : order < 0;
-    });
-    std::vector<std::uint32_t> first(wedges.vertex.size());
-    std::iota(first.begin(), first.end(), 0U);
-    for (std::size_t i = 1; i < sorted.size(); ++i) {
-        if (compared(sorted[i - 1], sorted[i]) == 0) first[sorted[i]] = first[sorted[i - 1]];
-    }
-    for (auto& other : wedges.others)
-        other[2] = first[other[2]];
-    first.resize(vertices);
-    wedges.of_vertex = std::move(first);
-    return wedges;
-}
-
-/// Returns the position along the Z curve of a point within [-1, 1], with 16 bits for each axis.
-std::uint64_t curve_key(const glm::dvec3& p) {
-    const auto spread = [](double x) {
-        const double scaled = std::clamp((x + 1.0) * 32768.0, 0.0, 65535.0);
-        auto bits = static_cast<std::uint64_t>(scaled);
-        bits = (bits | (bits << 16)) & 0x0000FF0000FF;
-        bits = (bits | (bits << 8)) & 0x00F00F00F00F;
-        bits = (bits | (bits << 4)) & 0x0C30C30C30C3;
-        return (bits | (bits << 2)) & 0x249249249249;
-    };
-    return spread(p.x) | (spread(p.y) << 1) | (spread(p.z) << 2);
-}
-
-/// Returns the corner of a triangle with the first position by value. All computations begin there,
-/// because their rounding depends on the first corner.
-Corner first_corner(const Mesh& mesh, std::uint32_t triangle) {
-    Corner first = 3 * triangle;
-    for (Corner corner = first + 1; corner < 3 * triangle + 3; ++corner) {
-        if (compare(mesh.positions[vertex_of(corner, mesh.triangles)],
-                    mesh.positions[vertex_of(first, mesh.triangles)]) < 0)
-            first = corner;
-    }
-    return first;
-}
-
-/// The first corner of a triangle with a key of 48 bits.
-struct KeyedCorner {
-    std::uint64_t key = 0;
-    Corner corner = 0;
-};
-
-/// Sorts by key; equal keys keep their order.
-void radix_sort(std::vector<KeyedCorner>& values) {
-    constexpr unsigned digit_bits = 12;
-    constexpr std::size_t digits = std::size_t(1) << digit_bits;
-    std::vector<KeyedCorner> sorted(values.size());
-    std::vector<std::size_t> place(digits);
-    for (unsigned shift = 0; shift < 48; shift += digit_bits) {
-        std::fill(place.begin(), place.end(), 0);
-        const auto digit = [&](const KeyedCorner& value) {
-            return static_cast<std::size_t>(value.key >> shift) & (digits - 1);
-        };
-        for (const KeyedCorner& value : values)
-            ++place[digit(value)];
-        std::exclusive_scan(place.begin(), place.end(), place.begin(), std::size_t(0));
-        for (const KeyedCorner& value : values)
-            sorted[place[digit(value)]++] = value;
-        values.swap(sorted);
-    }
-}
-
-/// Returns the first corners of the triangles in an order that depends only on their values.
-std::vector<Corner> canonical_order(const AttributedMesh& surface, const UnitSpace& space,
-                                    const Parts& parts) {
-    const Mesh& mesh = surface.mesh;
-    std::vector<KeyedCorner> keyed(mesh.triangles.size());
-    parallel_for(keyed.size(), 16384, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t) {
-            const Corner first = first_corner(mesh, static_cast<std::uint32_t>(t));
-            const glm::uvec3 triangle = triangle_from(first, mesh.triangles);
-            glm::dvec3 sum(0.0);
-            for (int i = 0; i < 3; ++i)
-                sum += space(mesh.positions[triangle[i]]);
-            const bool finite = is_finite(glm::vec3(sum));
-            keyed[t] = {finite ? curve_key(sum / 3.0) : 0, first};
-        }
-    });
-    radix_sort(keyed);
-    const auto is_before = [&](const KeyedCorner& a, const KeyedCorner& b) {
-        const glm::uvec3 triangle_a = triangle_from(a.corner, mesh.triangles);
-        const glm::uvec3 triangle_b = triangle_from(b.corner, mesh.triangles);
-        for (int i = 0; i < 3; ++i) {
-            const std::uint32_t va = triangle_a[i];
-            const std::uint32_t vb = triangle_b[i];
-            if (va == vb) continue;
-            auto order = compare(mesh.positions[va], mesh.positions[vb]);
-            if (order == 0) order = surface.compare_attributes(va, vb);
-            if (order != 0) return order < 0;
-        }
-        const std::uint32_t ta = triangle_of(a.corner);
-        const std::uint32_t tb = triangle_of(b.corner);
-        if (parts[ta] != parts[tb]) return parts[ta] < parts[tb];
-        if (!mesh.smoothing_groups.empty() &&
-            mesh.smoothing_groups[ta] != mesh.smoothing_groups[tb])
-            return mesh.smoothing_groups[ta] < mesh.smoothing_groups[tb];
-        return a.corner < b.corner;
-    };
-    for (auto first = keyed.begin(); first != keyed.end();) {
-        const auto last = std::find_if(
-            first, keyed.end(), [&](const KeyedCorner& value) { return value.key != first->key; });
-        std::sort(first, last, is_before);
-        first = last;
-    }
-    std::vector<Corner> order;
-    order.reserve(keyed.size());
-    for (const KeyedCorner& value : keyed)
-        order.push_back(value.corner);
-    return order;
-}
-
-/// Returns the mean squared length of a texture unit on the surface; 0 if the texture has no area.
-double texture_scale_of(const Mesh& mesh, const CollapseInput& input,
-                        std::span<const std::uint32_t> vertex_of_wedge) {
-    double area = 0.0;
-    double texture_area = 0.0;
-    for (std::size_t t = 0; t < input.wedges.size(); ++t) {
-        const auto at = [&](int i) {
-            const glm::dvec3 p(input.positions[input.topology.triangles[t][i]]);
-            return (p - input.center) * input.scale;
-        };
-        const auto texcoord = [&](int i) {
-            return glm::dvec2(mesh.texcoords[vertex_of_wedge[input.wedges[t][i]]]);
-        };
-        area += glm::length(glm::cross(at(1) - at(0), at(2) - at(0)));
-        const glm::dvec2 tb = texcoord(1) - texcoord(0);
-        const glm::dvec2 tc = texcoord(2) - texcoord(0);
-        const double here = std::abs(tb.x * tc.y - tb.y * tc.x);
-        if (std::isfinite(here)) texture_area += here;
-    }
-    return texture_area > 0.0 ? area / texture_area : 0.0;
-}
-
-/// Sets the attributes that the error considers, and their weights.
-void set_attributes(CollapseInput& input, const AttributedMesh& surface,
-                    const AttributeWeights& weights,
-                    std::span<const std::uint32_t> vertex_of_wedge) {
-    const Mesh& mesh = surface.mesh;
-    const Deformation& deformation = surface.deformation;
-    double texture_scale = 0.0;
-    if (!mesh.texcoords.empty()) texture_scale = texture_scale_of(mesh, input, vertex_of_wedge);
-    input.has_texcoords = texture_scale > 0.0;
-    const bool with_normals = weights.normal > 0.0 && !mesh.normals.empty() && surface.with_normals;
-    const bool with_colors = weights.color > 0.0 && !mesh.colors.empty();
-    const bool with_joints = weights.joint > 0.0 && !deformation.joints.empty();
-    const auto add = [&](bool is_used, std::size_t count, double weight) {
-        if (is_used) input.attribute_weights.insert(input.attribute_weights.end(), count, weight);
-    };
-    add(input.has_texcoords, 2, weights.texcoord * weights.texcoord * texture_scale);
-    add(with_normals, 3, weights.normal * weights.normal);
-    add(with_colors, 4, weights.color * weights.color);
-    add(with_joints, 4, weights.joint * weights.joint);
-    std::vector<std::span<const glm::vec3>> displacements;
-    for (const std::vector<glm::vec3>& values : deformation.displacements) {
-        if (weights.target > 0.0 && !values.empty()) displacements.emplace_back(values);
-    }
-    const double target_weight = weights.target * input.scale;
-    add(true, 3 * displacements.size(), target_weight * target_weight);
-    input.attributes.reserve(vertex_of_wedge.size() * input.attribute_weights.size());
-    const auto append = [&](const auto& value) {
-        for (int i = 0; i < value.length(); ++i)
-            input.attributes.push_back(std::isfinite(value[i]) ? value[i] : 0.0F);
-    };
-    for (const std::uint32_t vertex : vertex_of_wedge) {
-        if (input.has_texcoords) append(mesh.texcoords[vertex]);
-        if (with_normals) append(mesh.normals[vertex]);
-        if (with_colors) append(mesh.colors[vertex]);
-        if (with_joints) append(deformation.joints[vertex]);
-        for (const std::span<const glm::vec3> values : displacements)
-            append(values[vertex]);
     }
 }
 
@@ -429,72 +113,91 @@ Remains gathered_remains(const Mesh& mesh, const Collapsed& collapsed,
     return remains;
 }
 
-/// The surface of a mesh for edge collapses, and the way back from it.
-struct Prepared {
-    CollapseInput input;
-    std::vector<std::uint32_t> sources;  ///< For each triangle of the surface, that of the mesh.
-    std::vector<std::uint32_t> set_aside;
-    std::vector<std::uint32_t> vertex_of_wedge;
+/// The meshes that are decimated together.
+class Scene {
+  public:
+    Scene(std::span<const SceneMesh> meshes, const DecimateOptions& options) : meshes_(meshes) {
+        const bool keeps_normals = options.frames.normals == NormalMode::keep;
+        double longest = 0.0;
+        for (const SceneMesh& mesh : meshes) {
+            surfaces_.push_back({mesh.mesh, mesh.deformation, keeps_normals});
+            const double scale = unit_space(mesh.mesh).scale;
+            longest = std::max(longest, mesh.scale / scale);
+            triangles_ += mesh.mesh.triangles.size();
+        }
+        if (meshes.size() == 1)
+            scale_ = unit_space(meshes[0].mesh).scale / meshes[0].scale;
+        else if (longest > 0.0)
+            scale_ = std::ldexp(1.0, -(std::ilogb(longest) + 1));
+    }
+
+    [[nodiscard]] std::size_t size() const { return meshes_.size(); }
+    [[nodiscard]] std::size_t triangles() const { return triangles_; }
+    /// Maps lengths in the scene to those of points in edge collapses, within [-1, 1].
+    [[nodiscard]] double scale() const { return scale_; }
+    [[nodiscard]] const SceneMesh& operator[](std::size_t mesh) const { return meshes_[mesh]; }
+    [[nodiscard]] const AttributedMesh& surface(std::size_t mesh) const { return surfaces_[mesh]; }
+
+  private:
+    std::span<const SceneMesh> meshes_;
+    std::vector<AttributedMesh> surfaces_;
+    std::size_t triangles_ = 0;
+    double scale_ = 1.0;
 };
 
-/// Arrays are freed as soon as they are not needed, because the memory for the input is the largest
-/// part of that for decimation.
-Prepared prepared(const AttributedMesh& surface, const DecimateOptions& options, Report& report) {
-    const Mesh& mesh = surface.mesh;
-    const UnitSpace space = unit_space(mesh);
-    const Parts parts = parts_of(mesh);
-    Prepared result;
-    CollapseInput& input = result.input;
-    std::vector<std::uint32_t> classes = weld_positions(mesh.positions);
-    Wedges wedges = wedges_of(surface, classes, parts);
-    input.topology = topology_of(mesh, classes, report, canonical_order(surface, space, parts));
-    result.sources = std::move(input.topology.source_triangle);
-    result.set_aside = std::move(input.topology.set_aside);
-    input.center = space.center;
-    input.scale = space.scale;
-    input.positions.reserve(input.topology.position_vertex.size());
-    for (const std::uint32_t vertex : input.topology.position_vertex)
-        input.positions.push_back(mesh.positions[vertex]);
-    input.fits_positions = options.fit_positions;
-    if (options.fit_positions && !result.set_aside.empty()) {
-        // Triangles that are set aside keep their vertices.
-        std::vector<bool> is_fixed(mesh.positions.size(), false);
-        for (const std::uint32_t t : result.set_aside) {
-            for (int i = 0; i < 3; ++i)
-                is_fixed[classes[mesh.triangles[t][i]]] = true;
-        }
-        for (const std::uint32_t vertex : input.topology.position_vertex)
-            input.is_fixed.push_back(is_fixed[vertex]);
-    }
-    free_memory(classes);
-    free_memory(input.topology.position_vertex);
-    input.wedges.reserve(result.sources.size());
-    for (const std::uint32_t source : result.sources) {
-        const glm::uvec3 triangle = triangle_from(first_corner(mesh, source), mesh.triangles);
-        const std::uint32_t part = parts[source];
-        input.wedges.emplace_back(wedges.at(triangle.x, part), wedges.at(triangle.y, part),
-                                  wedges.at(triangle.z, part));
-    }
-    input.wedge_count = wedges.vertex.size();
-    result.vertex_of_wedge = std::move(wedges.vertex);
-    wedges = {};
-    set_attributes(input, surface, options.weights, result.vertex_of_wedge);
-    input.keeps_borders = options.keep_borders;
-    input.keeps_seams = options.keep_seams;
-    if (options.triangles)
-        input.triangles =
-            *options.triangles - std::min(*options.triangles, result.set_aside.size());
-    if (options.max_error) input.max_error = *options.max_error * space.scale;
-    if (options.max_normal_error)
-        input.min_normal_cosine = portable::cos(*options.max_normal_error);
-    return result;
-}
+/// The remaining triangles of each mesh of a scene.
+struct SceneRemains {
+    std::vector<Remains> meshes;
+    std::vector<Report> reports;  ///< By mesh.
+    Obstacles obstacles;
 
-Remains remains_of(const AttributedMesh& surface, const DecimateOptions& options, Report& report) {
-    Prepared input = prepared(surface, options, report);
-    const Collapsed collapsed = collapse_edges(std::move(input.input));
-    return gathered_remains(surface.mesh, collapsed, input.sources, input.set_aside,
-                            input.vertex_of_wedge);
+    [[nodiscard]] std::size_t count() const {
+        std::size_t sum = 0;
+        for (const Remains& mesh : meshes)
+            sum += mesh.count();
+        return sum;
+    }
+};
+
+SceneRemains remains_of(const Scene& scene, const DecimateOptions& options) {
+    SceneRemains result;
+    result.reports.resize(scene.size());
+    std::vector<PreparedMesh> prepared_meshes;
+    std::vector<double> factors;
+    std::size_t set_aside = 0;
+    for (std::size_t m = 0; m < scene.size(); ++m) {
+        factors.push_back(scene[m].scale * scene.scale() / unit_space(scene[m].mesh).scale);
+        // The weights of attributes without a length are relative to the size of the scene.
+        AttributeWeights weights = options.weights;
+        for (double* weight : {&weights.normal, &weights.color, &weights.joint})
+            *weight /= factors[m];
+        prepared_meshes.push_back(prepared(scene.surface(m), options, weights,
+                                           options.drop_parts / scene[m].scale, result.reports[m]));
+        set_aside += prepared_meshes.back().set_aside.size();
+    }
+    const auto with_limits = [&](CollapseInput input) {
+        if (options.triangles)
+            input.triangles = *options.triangles - std::min(*options.triangles, set_aside);
+        if (options.max_error) input.max_error = *options.max_error * scene.scale();
+        input.for_picture = options.goal == DecimateGoal::picture;
+        return input;
+    };
+    std::vector<Collapsed> collapsed;
+    if (scene.size() == 1) {
+        collapsed.push_back(collapse_edges(with_limits(std::move(prepared_meshes[0].input))));
+        result.obstacles = collapsed[0].obstacles;
+    } else {
+        JoinedSurfaces joined(prepared_meshes, factors);
+        const Collapsed all = collapse_edges(with_limits(joined.take()));
+        collapsed = joined.separated(all);
+        result.obstacles = all.obstacles;
+    }
+    for (std::size_t m = 0; m < scene.size(); ++m) {
+        const PreparedMesh& mesh = prepared_meshes[m];
+        result.meshes.push_back(gathered_remains(scene[m].mesh, collapsed[m], mesh.sources,
+                                                 mesh.set_aside, mesh.vertex_of_wedge));
+    }
+    return result;
 }
 
 /// Returns the larger of the maximum distances in both directions.
@@ -526,28 +229,27 @@ double distance_from(const Mesh& mesh, const Remains& remains, Report& report) {
 /// Decimates until the measured distance reaches `max_error`. The error of a collapse only
 /// estimates that distance, so its limit is adjusted: the result with the fewest triangles within
 /// the distance is returned.
-Remains remains_within(const AttributedMesh& surface, const DecimateOptions& options,
-                       Report& report) {
-    const Mesh& mesh = surface.mesh;
+SceneRemains remains_within(const Scene& scene, const DecimateOptions& options) {
     constexpr int max_attempts = 10;
     constexpr double well_used = 0.7;  ///< The part of the distance at which the search ends.
     constexpr double rounding = 2.5e-7;
-    const double allowed = *options.max_error + rounding / unit_space(mesh).scale;
+    const double allowed = *options.max_error + rounding / scene.scale();
     DecimateOptions attempt = options;
-    std::optional<Remains> best;
-    Report best_report;
+    std::optional<SceneRemains> best;
     // Limits below `good` keep the distance, and limits above `bad` do not.
     double good = 0.0;
     double bad = std::numeric_limits<double>::infinity();
     for (int i = 0; i < max_attempts; ++i) {
-        Report found;
-        Remains remains = remains_of(surface, attempt, found);
-        const double distance = distance_from(mesh, remains, found);
+        SceneRemains remains = remains_of(scene, attempt);
+        double distance = 0.0;
+        for (std::size_t m = 0; m < scene.size(); ++m) {
+            const double here = distance_from(scene[m].mesh, remains.meshes[m], remains.reports[m]);
+            distance = std::max(distance, here * scene[m].scale);
+        }
         const double limit = *attempt.max_error;
         const bool is_within = distance <= allowed;
         if (is_within && (!best || remains.count() <= best->count())) {
             best = std::move(remains);
-            best_report = found;
         }
         (is_within ? good : bad) = limit;
         const bool has_reached = options.triangles && best && best->count() <= *options.triangles;
@@ -562,10 +264,9 @@ Remains remains_within(const AttributedMesh& surface, const DecimateOptions& opt
     }
     if (!best) {
         // Not even collapses without an error keep the distance.
-        attempt.triangles = mesh.triangles.size();
-        best = remains_of(surface, attempt, best_report);
+        attempt.triangles = scene.triangles();
+        best = remains_of(scene, attempt);
     }
-    report.merge(best_report);
     return *std::move(best);
 }
 
@@ -642,21 +343,63 @@ FramedMesh framed(const Mesh& input, FramedMesh small, FrameOptions frames, Repo
     return result;
 }
 
+/// Names the reasons why no more vertices can be removed, the most frequent first.
+std::string obstacles_text(const Obstacles& obstacles) {
+    std::array<std::pair<std::size_t, const char*>, 5> reasons = {
+        std::pair{obstacles.lines, "vertices where seams, hard edges or borders meet or are kept"},
+        {obstacles.parts, "vertices whose part would lose its shape"},
+        {obstacles.folds, "vertices whose triangles would turn over"},
+        {obstacles.non_manifold, "vertices at non-manifold edges"},
+        {obstacles.limits, "vertices that would exceed the maximum error"}};
+    std::stable_sort(reasons.begin(), reasons.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::string text;
+    for (const auto& [count, reason] : reasons) {
+        if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, reason);
+    }
+    return text.empty() ? "the shape allows no fewer" : text;
+}
+
 }  // namespace
+
+std::vector<FramedMesh> decimated(std::span<const SceneMesh> meshes, const DecimateOptions& options,
+                                  std::span<Report> reports, Report& scene_report) {
+    if (reports.size() != meshes.size())
+        throw InvalidInput(
+            fmt::format("there are {} meshes, but {} reports", meshes.size(), reports.size()));
+    for (const SceneMesh& mesh : meshes) {
+        check(mesh.mesh, mesh.deformation, options);
+        if (!(mesh.scale > 0.0 && std::isfinite(mesh.scale)))
+            throw InvalidInput(fmt::format(
+                "the scale of a mesh is {}, but must be finite and above 0", mesh.scale));
+    }
+    if (meshes.empty()) return {};
+    const Scene scene(meshes, options);
+    const SceneRemains remains =
+        options.max_error ? remains_within(scene, options) : remains_of(scene, options);
+    // One interior move removes two triangles, so the result may be one less than requested.
+    if (options.triangles && !options.max_error && remains.count() > *options.triangles)
+        scene_report.add(
+            "number of triangles out of reach", "mesh", 0,
+            fmt::format("{} are left: {}", remains.count(), obstacles_text(remains.obstacles)));
+    std::vector<FramedMesh> results;
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+        reports[m].merge(remains.reports[m]);
+        const Mesh& mesh = meshes[m].mesh;
+        results.push_back(framed(mesh, gathered(mesh, remains.meshes[m], reports[m]),
+                                 options.frames, reports[m]));
+    }
+    return results;
+}
 
 FramedMesh decimated(const Mesh& mesh, const DecimateOptions& options, Report& report,
                      const Deformation& deformation) {
-    check(mesh, deformation, options);
-    const AttributedMesh surface{mesh, deformation, options.frames.normals == NormalMode::keep};
-    const Remains remains = options.max_error ? remains_within(surface, options, report)
-                                              : remains_of(surface, options, report);
-    // One interior move removes two triangles, so the result may be one less than requested.
-    if (options.triangles && !options.max_error && remains.count() > *options.triangles) {
-        report.add("number of triangles out of reach", "mesh", 0,
-                   fmt::format("{} are left: seams, hard edges, borders and shape allow no fewer",
-                               remains.count()));
-    }
-    return framed(mesh, gathered(mesh, remains, report), options.frames, report);
+    const SceneMesh input{mesh, deformation};
+    Report own;
+    std::vector<FramedMesh> results =
+        decimated(std::span(&input, 1), options, std::span(&own, 1), own);
+    report.merge(own);
+    return std::move(results.front());
 }
 
 double max_corner_angle(const Mesh& original, const FramedMesh& result) {

@@ -17,6 +17,7 @@
 #include "portable_math.h"
 #include "relaxed_store.h"
 #include "topology/edge_collapse_parts.h"
+#include "topology/triangle_distance.h"
 
 namespace relief::detail {
 namespace {
@@ -34,6 +35,10 @@ constexpr double min_fit_cosine = 0.7071067811865476;
 /// A vertex is sharp if the normal of one of its triangles differs by more than this angle, 60
 /// degrees, from their mean.
 constexpr double min_smooth_cosine = 0.5;
+
+/// The maximum distance of a vertex from the triangles that replace it, relative to the size of its
+/// connected part. Half of a square and a corner of a cube are farther away, which are their shape.
+constexpr double max_part_distance = 0.2;
 
 /// The weight of the squared length, which prefers short edges if costs are otherwise equal.
 constexpr double length_preference = 1e-7;
@@ -72,6 +77,7 @@ class Collapser {
 
     [[nodiscard]] bool may_move(std::uint32_t vertex, const Ring& ring) const;
     [[nodiscard]] bool is_valid(std::uint32_t vertex, const Ring& ring, const Move& move) const;
+    [[nodiscard]] bool keeps_part(std::uint32_t vertex, const Ring& ring, const Move& move) const;
     [[nodiscard]] bool turns_over(std::uint32_t vertex, Corner corner, const Move& move) const;
     [[nodiscard]] bool turns_texture_over(Corner corner, std::uint32_t wedge_after) const;
     [[nodiscard]] bool has_normal_near(std::uint32_t vertex, const glm::dvec3& cross) const;
@@ -96,12 +102,13 @@ class Collapser {
 
     [[nodiscard]] bool may_be_at(std::uint32_t vertex, const Ring& ring, const glm::vec3& position);
     void fit_positions();
+    [[nodiscard]] Obstacles obstacles() const;
 
     CollapseInput input_;
     CollapseSurface surface_;
     std::optional<CollapseError> error_;  ///< If edges are to collapse.
     // By vertex:
-    std::vector<float> costs_;  ///< The cost of the cheapest collapse.
+    std::vector<float> costs_;  ///< CollapseError::priority() of the cheapest collapse.
     std::vector<std::uint8_t> flags_;
     std::vector<glm::vec3> mean_normals_;  ///< The sum of the unit normals of the input, or 0.
     // For sharp vertices; with a maximum angle of normals, for all; otherwise empty:
@@ -273,6 +280,25 @@ bool Collapser::leaves_normals(Corner corner, const Move& move) const {
     return !is_near_normals(cross, move.target, vb, vc);
 }
 
+/// Returns whether the connected part around a vertex keeps its shape: the triangles after the move
+/// are near the vertex, relative to the size of the part.
+bool Collapser::keeps_part(std::uint32_t vertex, const Ring& ring, const Move& move) const {
+    if (input_.part_sizes.empty()) return true;
+    const double most = max_part_distance * input_.part_sizes[vertex];
+    const glm::dvec3 p = input_.point(vertex);
+    const glm::dvec3 target = input_.point(move.target);
+    if (glm::dot(target - p, target - p) <= most * most) return true;
+    bool is_near = false;
+    CollapseSurface::for_moved(ring, move, [&](std::size_t i) {
+        if (is_near) return;
+        const Corner corner = ring.corners[i];
+        const glm::dvec3 b = input_.point(surface_[next_in_triangle(corner)].vertex);
+        const glm::dvec3 c = input_.point(surface_[previous_in_triangle(corner)].vertex);
+        is_near = squared_distance(p, Corners{target, b, c}) <= most * most;
+    });
+    return is_near;
+}
+
 /// Makes all checks that do not concern the cost.
 bool Collapser::is_valid(std::uint32_t vertex, const Ring& ring, const Move& move) const {
     if (surface_.joins_lines(ring, move)) return false;
@@ -285,7 +311,7 @@ bool Collapser::is_valid(std::uint32_t vertex, const Ring& ring, const Move& mov
                     turns_texture_over(corner, surface_.wedge_after(ring, move, i))) &&
                   !leaves_normals(corner, move);
     });
-    return is_good && surface_.keeps_topology(ring, move);
+    return is_good && keeps_part(vertex, ring, move) && surface_.keeps_topology(ring, move);
 }
 
 /// Finds the cheapest collapse of a vertex, and makes all checks if the vertex is careful.
@@ -299,7 +325,8 @@ float Collapser::best_move(std::uint32_t vertex, const Ring& ring, Move& best) c
         const double error = error_->cost(vertex, move);
         const glm::dvec3 along = input_.point(move.target) - input_.point(vertex);
         const double squared_length = glm::dot(along, along);
-        const double here = error + length_preference * squared_length * squared_length;
+        const double here = error_->priority(
+            error + length_preference * squared_length * squared_length, vertex, move);
         if (here > least || (here == least && move.target > best.target)) continue;
         if (careful && !is_valid(vertex, ring, move)) continue;
         if (!error_->is_within_limit(error, vertex, move)) continue;
@@ -545,6 +572,33 @@ void Collapser::fit_positions() {
     }
 }
 
+/// Counts why the remaining vertices do not move.
+Obstacles Collapser::obstacles() const {
+    Obstacles found;
+    for (std::uint32_t v = 0; v < flags_.size(); ++v) {
+        if ((flags_[v] & is_locked) != 0 && !surface_.is_removed(v)) ++found.non_manifold;
+    }
+    Ring ring;
+    for (const std::uint32_t v : alive_) {
+        if (surface_.is_removed(v) || !surface_.find_ring(v, ring)) continue;
+        if (!may_move(v, ring)) {
+            ++found.lines;
+            continue;
+        }
+        bool is_beyond_limit = false;
+        bool breaks_part = false;
+        Move move;
+        for (std::size_t spoke = 0; spoke < ring.spokes; ++spoke) {
+            if (!surface_.find_move(ring, spoke, move)) continue;
+            breaks_part = breaks_part || !keeps_part(v, ring, move);
+            if (!is_valid(v, ring, move)) continue;
+            is_beyond_limit = !error_->is_within_limit(error_->cost(v, move), v, move);
+        }
+        ++(is_beyond_limit ? found.limits : breaks_part ? found.parts : found.folds);
+    }
+    return found;
+}
+
 Collapsed Collapser::run() {
     // If a pass has no success, all vertices are checked carefully once more: what lies around
     // their neighbors may have changed. The number of such checks is limited, so that the time is
@@ -566,6 +620,7 @@ Collapsed Collapser::run() {
             costs_[v] = no_collapse;
         }
     }
+    if (triangles_ > target_ && target_ > 0) result_.obstacles = obstacles();
     if (input_.fits_positions && error_) fit_positions();
     result_.triangles = triangles_;
     result_.examined = examined_;

@@ -56,6 +56,10 @@ struct CollapseInput {
     bool keeps_seams = false;     ///< Vertices at a seam or at the border of a part do not move.
     bool fits_positions = false;  ///< Remaining vertices move to where they fit the input best.
     std::vector<bool> is_fixed;   ///< By vertex: does not move then. Empty: none.
+    /// By vertex: the diagonal of the bounding box of its connected part, in the unit of the
+    /// points.
+    std::vector<float> part_sizes;
+    bool for_picture = false;              ///< See CollapseError::priority().
     std::optional<std::size_t> triangles;  ///< The number of triangles to stop at.
     /// The maximum error of a collapse: the root of its cost divided by the area, in the unit of
     /// the points.
@@ -73,6 +77,16 @@ struct CollapseInput {
     }
 };
 
+/// Why vertices are left if fewer triangles were requested: how many of them could not move for
+/// each reason.
+struct Obstacles {
+    std::size_t non_manifold = 0;  ///< They are at non-manifold edges.
+    std::size_t lines = 0;         ///< Lines meet there, end there or must be kept.
+    std::size_t limits = 0;        ///< Each move exceeds the maximum error.
+    std::size_t parts = 0;         ///< Each move would take its part's shape.
+    std::size_t folds = 0;         ///< Each move would turn a triangle over or change the topology.
+};
+
 /// The result of collapse_edges().
 struct Collapsed {
     /// The triangles of the topology that remain, ascending.
@@ -85,6 +99,7 @@ struct Collapsed {
     std::size_t passes = 0;
     /// The number of triangles that were examined, a measure of the work.
     std::size_t examined = 0;
+    Obstacles obstacles;
 };
 
 /// Collapses edges until a limit is reached, or no collapse is possible.

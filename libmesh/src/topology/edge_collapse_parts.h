@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -220,6 +221,14 @@ class CollapseError {
         return std::max(0.0, own_cost(vertex, move)) + errors_[move.target];
     }
 
+    /// Returns what collapses are ordered by. A cost, with its squared error, keeps distances
+    /// small, but leaves many triangles where the surface is rough. For pictures, which saturate
+    /// there, the error itself counts: the root mean square times the area that has it.
+    [[nodiscard]] double priority(double cost, std::uint32_t vertex, const Move& move) const {
+        if (!input_.for_picture) return cost;
+        return std::sqrt(cost * (areas_[vertex] + areas_[move.target]));
+    }
+
     /// Returns whether a cost is within the maximum error.
     [[nodiscard]] bool is_within_limit(double cost, std::uint32_t vertex, const Move& move) const {
         if (!input_.max_error) return true;
@@ -239,13 +248,12 @@ class CollapseError {
         return std::span(attribute_sums_).subspan(wedge * sums_per_wedge_, sums_per_wedge_);
     }
     void add_attributes(std::size_t triangle, const glm::dvec3& normal, double doubled_area);
-
     const CollapseInput& input_;
     const CollapseSurface& surface_;
     // By vertex:
     std::vector<Quadric> quadrics_;
     std::vector<double> errors_;  ///< The quadric at the vertex itself.
-    std::vector<double> areas_;   ///< Only with a maximum error.
+    std::vector<double> areas_;
     /// By wedge: the sums of weight, and of gradient and offset of each attribute.
     std::vector<double> attribute_sums_;
     std::size_t sums_per_wedge_ = 0;

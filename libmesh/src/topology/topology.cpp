@@ -82,7 +82,8 @@ class TopologyMaker {
 void TopologyMaker::choose_triangles() {
     welded_.reserve(mesh_.triangles.size());
     result_.source_triangle.reserve(mesh_.triangles.size());
-    for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
+    const std::size_t count = order_.empty() ? mesh_.triangles.size() : order_.size();
+    for (std::uint32_t i = 0; i < count; ++i) {
         check_cancelled(i);
         const Corner first = order_.empty() ? 3 * i : order_[i];
         const std::uint32_t t = triangle_of(first);

@@ -40,9 +40,9 @@ struct Topology {
 /// \param classes  for each mesh vertex, the smallest vertex with its position (weld.h)
 /// \param report   counts collapsed triangles (two corners at one position), which are left out;
 ///                 triangles set aside; non-manifold edges
-/// \param order    the first corners of the mesh triangles, in the order of the surface's
-/// triangles;
-///                 or empty: the triangles of the mesh as they are
+/// \param order    the first corners of mesh triangles, in the order of the surface's triangles;
+/// the
+///                 others are left out. Empty: all triangles of the mesh as they are
 Topology topology_of(const Mesh& mesh, std::span<const std::uint32_t> classes, Report& report,
                      std::span<const Corner> order = {});
 

@@ -42,7 +42,8 @@ struct TangentTexcoords {
 
 /// A primitive after compute_frames().
 struct FramedPart {
-    std::string name;  ///< "mesh 'Body' primitive 0"; empty for a file with one mesh.
+    std::string name;  ///< "mesh 'Body' primitive 0"; empty for a file with one mesh and for the
+                       ///< whole model.
     std::size_t triangles = 0;
     std::size_t vertices_read = 0;
     std::size_t vertices_written = 0;  ///< Larger than `vertices_read` if vertices were split.
@@ -76,16 +77,25 @@ std::vector<FramedPart> add_tangents(GltfDocument& document, std::size_t materia
 struct TriangleInput {
     const Mesh& mesh;
     const Deformation& deformation;  ///< Of a glTF mesh.
-    std::size_t all_triangles = 0;   ///< Of the whole model.
+    /// The scale of its largest instance in the default scene of a document; otherwise 1.
+    double scale = 1.0;
 };
 
 /// Returns a mesh with other triangles. `source_vertex` of the result is empty if its vertices are
 /// not copies of the given ones.
 using TriangleChange = std::function<FramedMesh(const TriangleInput& input, Report& report)>;
 
+/// Changes all meshes of a model together.
+/// \param reports  by mesh
+/// \param whole    on the model as a whole
+/// \return by mesh, as from a TriangleChange
+using ModelChange = std::function<std::vector<FramedMesh>(
+    std::span<const TriangleInput> meshes, std::span<Report> reports, Report& whole)>;
+
 /// A report on a part of a model.
 struct PartReport {
-    std::string part;  ///< "mesh 'Body' primitive 0"; empty for a file with one mesh.
+    std::string part;  ///< "mesh 'Body' primitive 0"; empty for a file with one mesh and for the
+                       ///< whole model.
     Report report;
 };
 
@@ -107,6 +117,7 @@ struct ChangedModel {
 /// \param normals  the mode of the change: with `keep`, primitives without normals get none
 /// \throws InvalidInput if there are no triangles, or if none of a mesh file is left
 ChangedModel change_triangles(Model& model, NormalMode normals, const TriangleChange& change);
+ChangedModel change_triangles(Model& model, NormalMode normals, const ModelChange& change);
 
 /// The same for some meshes of a document, given by their indices.
 ChangedModel change_triangles(GltfDocument& document, std::span<const std::size_t> meshes,

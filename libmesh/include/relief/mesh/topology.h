@@ -6,10 +6,14 @@
 /// surface_distance_test.cpp, subdivide_test.cpp.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
@@ -21,12 +25,22 @@ namespace RELIEF_API relief {
 struct AttributeWeights {
     double texcoord = 1.0;  ///< In lengths on the surface that the texture moves by.
     /// The distance, relative to the size of the mesh, for which a difference of 1 between normals
-    /// counts. Only kept normals count.
-    double normal = 0.0;
+    /// counts. Only kept normals count. Where only distances matter, 0 is best.
+    double normal = 0.005;
     double color = 0.01;  ///< The same for a difference of 1 between colors.
     double joint = 0.01;  ///< The same for a difference of 1 between weights of joints.
     double target = 1.0;  ///< Of displacements by morph targets, which are lengths.
 };
+
+/// What a result is to resemble, which selects the next collapse: the smallest error times area, so
+/// that pictures of all surfaces differ little; or the smallest squared error times area, so that
+/// distances from the input are small.
+enum class DecimateGoal { picture, distance };
+
+template <>
+inline constexpr auto enum_names<DecimateGoal> =
+    std::array{EnumName<DecimateGoal>{"picture", DecimateGoal::picture},
+               EnumName<DecimateGoal>{"distance", DecimateGoal::distance}};
 
 /// The limits of a decimation; at least one must be given, and the first one that is reached ends
 /// it.
@@ -40,6 +54,7 @@ struct DecimateOptions {
     /// input has tangents, they are recomputed unless the mode is none.
     FrameOptions frames;
     AttributeWeights weights = {};
+    DecimateGoal goal = DecimateGoal::picture;
     /// The maximum angle, in radians, above 0, between a triangle that changes and the input at
     /// each of its vertices: one of the input's triangles at the vertex must be within it.
     std::optional<double> max_normal_error = std::nullopt;
@@ -48,6 +63,10 @@ struct DecimateOptions {
     /// Moves the vertices that remain to where the result fits the input best, which about halves
     /// the distance on curved surfaces. Boundaries, and vertices that could not be removed, stay.
     bool fit_positions = false;
+    /// Connected parts whose bounding box has a diagonal shorter than this length are removed
+    /// first, and their triangles are counted as a finding; the largest part of each material of a
+    /// mesh stays. Default: none is removed.
+    double drop_parts = 0.0;
 };
 
 /// Removes vertices by edge collapses in order of increasing error until a limit is reached.
@@ -78,6 +97,25 @@ struct DecimateOptions {
 /// Source: [Garland and Heckbert 1997], [Hoppe 1999].
 FramedMesh decimated(const Mesh& mesh, const DecimateOptions& options,
                      Report& report = IgnoredReport(), const Deformation& deformation = {});
+
+/// A mesh of a scene. The referenced objects must outlive it.
+struct SceneMesh {
+    const Mesh& mesh;
+    const Deformation& deformation;
+    double scale = 1.0;  ///< The length of a unit of the mesh in the scene; finite, above 0.
+};
+
+/// Decimates the meshes of a scene in one order of increasing error, so that triangles are left
+/// where they are needed most. Lengths, such as `max_error`, are those of the scene, and
+/// `triangles` is the number for all meshes.
+///
+/// \param reports       by mesh, what the overload for one mesh counts
+/// \param scene_report  a target number of triangles that could not be reached
+/// \return by mesh, as from the overload for one mesh, whose result is the same bits for a scene of
+///         one mesh
+/// \throws InvalidInput as the overload for one mesh, or if there are not as many reports as meshes
+std::vector<FramedMesh> decimated(std::span<const SceneMesh> meshes, const DecimateOptions& options,
+                                  std::span<Report> reports, Report& scene_report);
 
 /// Measures what DecimateOptions::max_normal_error limits.
 ///

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "io/model/mesh_instances.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/model.h"
 #include "relief/mesh/report.h"
@@ -314,11 +315,9 @@ std::map<std::size_t, std::vector<GltfPrimitiveId>> primitives_by_mesh(
     return meshes;
 }
 
-void change_joined(GltfDocument& document, const JoinedPrimitives& joined,
-                   const TriangleChange& change, NormalMode normals, std::size_t all_triangles,
-                   ChangedModel& done) {
-    Report report;
-    const FramedMesh changed = change({joined.mesh(), joined.deformation(), all_triangles}, report);
+void replace_joined(GltfDocument& document, const JoinedPrimitives& joined,
+                    const FramedMesh& changed, NormalMode normals, Report report,
+                    ChangedModel& done) {
     for (std::size_t i = 0; i < joined.ids().size(); ++i) {
         const GltfPrimitiveId id = joined.ids()[i];
         if (changed.mesh.material_ranges[i].triangle_count == 0) {
@@ -339,26 +338,40 @@ void change_joined(GltfDocument& document, const JoinedPrimitives& joined,
 
 ChangedModel change_document(GltfDocument& document,
                              const std::map<std::size_t, std::vector<GltfPrimitiveId>>& primitives,
-                             NormalMode normals, const TriangleChange& change) {
+                             NormalMode normals, const ModelChange& change) {
     ChangedModel done;
     std::vector<JoinedPrimitives> meshes;
     for (const auto& [mesh, ids] : primitives)
         meshes.emplace_back(document, ids);
     if (meshes.empty()) throw InvalidInput("has no triangles");
+    const std::map<std::size_t, detail::MeshInstances> instances = detail::instances_of(document);
+    std::vector<TriangleInput> inputs;
     for (const JoinedPrimitives& joined : meshes) {
         done.triangles_read += joined.mesh().triangles.size();
         done.vertices_read += joined.mesh().positions.size();
+        const auto placed = instances.find(joined.ids().front().mesh);
+        const bool has_scale = placed != instances.end() && placed->second.largest > 0.0;
+        inputs.push_back(
+            {joined.mesh(), joined.deformation(), has_scale ? placed->second.largest : 1.0});
     }
-    for (const JoinedPrimitives& joined : meshes)
-        change_joined(document, joined, change, normals, done.triangles_read, done);
+    std::vector<Report> reports(meshes.size());
+    Report whole;
+    const std::vector<FramedMesh> changed = change(inputs, reports, whole);
+    for (std::size_t i = 0; i < meshes.size(); ++i)
+        replace_joined(document, meshes[i], changed[i], normals, std::move(reports[i]), done);
+    if (!whole.empty()) done.reports.push_back({"", std::move(whole)});
     return done;
 }
 
-void change_mesh(Mesh& mesh, const TriangleChange& change, ChangedModel& done) {
+void change_mesh(Mesh& mesh, const ModelChange& change, ChangedModel& done) {
     Report report;
+    Report whole;
     done.triangles_read = mesh.triangles.size();
     done.vertices_read = mesh.positions.size();
-    mesh = change({mesh, {}, mesh.triangles.size()}, report).mesh;
+    const Deformation none;
+    const TriangleInput input{mesh, none};
+    mesh = std::move(change(std::span(&input, 1), std::span(&report, 1), whole).front().mesh);
+    report.merge(whole);
     if (mesh.triangles.empty()) throw InvalidInput("none of its triangles has an area");
     done.triangles_written = mesh.triangles.size();
     done.vertices_written = mesh.positions.size();
@@ -366,9 +379,23 @@ void change_mesh(Mesh& mesh, const TriangleChange& change, ChangedModel& done) {
     done.reports.push_back({"", std::move(report)});
 }
 
+/// Applies a change to each mesh.
+ModelChange one_by_one(const TriangleChange& change) {
+    return [&change](std::span<const TriangleInput> meshes, std::span<Report> reports, Report&) {
+        std::vector<FramedMesh> changed;
+        for (std::size_t i = 0; i < meshes.size(); ++i)
+            changed.push_back(change(meshes[i], reports[i]));
+        return changed;
+    };
+}
+
 }  // namespace
 
 ChangedModel change_triangles(Model& model, NormalMode normals, const TriangleChange& change) {
+    return change_triangles(model, normals, one_by_one(change));
+}
+
+ChangedModel change_triangles(Model& model, NormalMode normals, const ModelChange& change) {
     if (auto* document = std::get_if<GltfDocument>(&model))
         return change_document(*document, primitives_by_mesh(*document), normals, change);
     ChangedModel done;
@@ -382,7 +409,7 @@ ChangedModel change_triangles(GltfDocument& document, std::span<const std::size_
     std::erase_if(primitives, [&](const auto& entry) {
         return std::find(meshes.begin(), meshes.end(), entry.first) == meshes.end();
     });
-    return change_document(document, primitives, normals, change);
+    return change_document(document, primitives, normals, one_by_one(change));
 }
 
 }  // namespace relief
