@@ -32,10 +32,14 @@ struct Segmentation {
 /// Divides all faces.
 Segmentation divided(const AtlasSurface& surface, const ChartLimits& limits);
 
-/// Smooths the borders between charts. Connected parts of charts become charts of their own; those
-/// below `min_part_area` of the whole area join a neighbor.
-void smooth_borders(const AtlasSurface& surface, Segmentation& segmentation);
+/// Straightens the borders between charts. Charts below `min_part_area` of the whole area join a
+/// neighbor; connected parts of charts become charts of their own.
+void straighten_borders(const AtlasSurface& surface, Segmentation& segmentation);
 
 inline constexpr double min_part_area = 2e-4;
+
+/// Replaces the borders between charts by shorter and straighter ones, which prefer creases. The
+/// parts of a chart need not be connected afterwards.
+void replace_borders(const AtlasSurface& surface, Segmentation& segmentation);
 
 }  // namespace relief::detail

@@ -288,7 +288,7 @@ Unwrapped unwrap(const Mesh& mesh, const UnwrapOptions& options, Report& report)
     }
     const Segmentation segmentation = during("dividing into charts", [&] {
         Segmentation merged = divided(surface, ChartLimits{});
-        smooth_borders(surface, merged);
+        straighten_borders(surface, merged);
         return merged;
     });
 
