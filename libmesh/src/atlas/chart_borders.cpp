@@ -70,12 +70,16 @@ void join_small_parts(const AtlasSurface& surface, double min_area, std::size_t 
 
 }  // namespace
 
+void separate_components(const AtlasSurface& surface, Segmentation& segmentation) {
+    segmentation.count = number_components(surface, segmentation.chart);
+}
+
 void straighten_borders(const AtlasSurface& surface, Segmentation& segmentation) {
     std::size_t count = number_components(surface, segmentation.chart);
     const double total = std::accumulate(surface.areas.begin(), surface.areas.end(), 0.0);
     join_small_parts(surface, min_part_area * total, count, segmentation.chart);
     segmentation.count = number_components(surface, segmentation.chart);
-    replace_borders(surface, segmentation);
+    replace_borders(surface, segmentation, std::vector<std::uint32_t>(segmentation.count, 0));
     segmentation.count = number_components(surface, segmentation.chart);
 }
 

@@ -10,17 +10,29 @@
 namespace relief::detail {
 namespace {
 
-/// Only charts below this share of the area look for a neighbor.
+/// Charts below this share of the area look for any neighbor; larger ones for one behind a smooth
+/// border.
 constexpr double max_area_share = 0.02;
+/// The cosine of the angle between the faces of a crease.
+constexpr double crease_cosine = 0.4;
+/// The share of creases in a common border above which it is not smooth.
+constexpr double max_crease_share = 0.2;
 /// The share of the common border in the shorter perimeter below which charts do not merge.
 constexpr double min_border_share = 0.15;
 /// The box of a union may be larger than both boxes by this factor: long and branched charts waste
 /// space in the map.
 constexpr double max_box_growth = 1.25;
+/// The largest mean of the symmetric Dirichlet energy of a union, relative to that of an isometric
+/// map: of small charts, which matter little, and of others. It keeps the L2 stretch below 1.005.
+constexpr double max_union_energy = 1.02;
+constexpr double max_large_union_energy = 1.006;
 /// The number of failures after which a chart stays as it is.
 constexpr int max_failures = 3;
-/// The number of faces of all unions that are tried, per face of the surface.
+/// The number of faces of all unions that are tried, per face of the surface: in all, and with
+/// larger charts. These may also try a fixed number of faces, which costs little time.
 constexpr double max_tried_faces = 3.0;
+constexpr double max_tried_large = 0.05;
+constexpr double max_tried_at_all = 20000.0;
 constexpr int max_rounds = 64;
 
 double box_area(const FlatChart& chart) {
@@ -40,7 +52,9 @@ class ChartMerger {
           chart_of_(surface.faces.size()),
           perimeters_(charts_.size()),
           failures_(charts_.size(), 0),
-          faces_left_(max_tried_faces * static_cast<double>(surface.faces.size())) {
+          faces_left_(max_tried_faces * static_cast<double>(surface.faces.size())),
+          large_faces_left_(max_tried_at_all +
+                            max_tried_large * static_cast<double>(surface.faces.size())) {
         for (std::uint32_t chart = 0; chart < charts_.size(); ++chart) {
             total_area_ += charts_[chart].area;
             adopt(chart);
@@ -68,6 +82,7 @@ class ChartMerger {
     struct Pair {
         std::uint32_t a, b;
         double length;       ///< Of the common border.
+        double creases;      ///< Their length in the common border.
         double share = 0.0;  ///< Of the common border in the shorter perimeter.
     };
 
@@ -96,7 +111,10 @@ class ChartMerger {
         borders.reserve(seams_.size());
         for (const Corner seam : seams_) {
             const auto [a, b] = charts_at(seam);
-            borders.push_back({a, b, surface_.edge_length(seam)});
+            const double length = surface_.edge_length(seam);
+            const double cosine =
+                glm::dot(surface_.normals[seam / 3], surface_.normals[surface_.opposite[seam] / 3]);
+            borders.push_back({a, b, length, cosine < crease_cosine ? length : 0.0});
         }
         // Stable, so that lengths are added in a fixed order.
         std::stable_sort(borders.begin(), borders.end(), [](const Pair& x, const Pair& y) {
@@ -104,21 +122,26 @@ class ChartMerger {
         });
         std::vector<Pair> pairs;
         for (const Pair& border : borders) {
-            if (pairs.empty() || pairs.back().a != border.a || pairs.back().b != border.b)
+            if (pairs.empty() || pairs.back().a != border.a || pairs.back().b != border.b) {
                 pairs.push_back(border);
-            else
-                pairs.back().length += border.length;
+                continue;
+            }
+            pairs.back().length += border.length;
+            pairs.back().creases += border.creases;
         }
         std::erase_if(pairs, [&](Pair& pair) {
             pair.share = pair.length / std::min(perimeters_[pair.a], perimeters_[pair.b]);
             const std::uint32_t small = smaller(pair);
             return pair.share < min_border_share || failures_[small] >= max_failures ||
-                   charts_[small].area > max_area_share * total_area_ ||
+                   (is_large(pair) && pair.creases > max_crease_share * pair.length) ||
                    std::binary_search(failed_.begin(), failed_.end(), std::pair(pair.a, pair.b));
         });
         std::stable_sort(pairs.begin(), pairs.end(),
                          [](const Pair& x, const Pair& y) { return x.share > y.share; });
         return pairs;
+    }
+    [[nodiscard]] bool is_large(const Pair& pair) const {
+        return charts_[smaller(pair)].area > max_area_share * total_area_;
     }
     [[nodiscard]] std::uint32_t smaller(const Pair& pair) const {
         return charts_[pair.a].area < charts_[pair.b].area ? pair.a : pair.b;
@@ -131,9 +154,10 @@ class ChartMerger {
         for (const Pair& pair : candidates) {
             const auto faces = static_cast<double>(charts_[pair.a].mesh.faces.size() +
                                                    charts_[pair.b].mesh.faces.size());
-            if (is_used[pair.a] || is_used[pair.b] || faces > faces_left_) continue;
+            double& left = is_large(pair) ? large_faces_left_ : faces_left_;
+            if (is_used[pair.a] || is_used[pair.b] || faces > left) continue;
             is_used[pair.a] = is_used[pair.b] = true;
-            faces_left_ -= faces;
+            left -= faces;
             result.push_back(pair);
         }
         return result;
@@ -152,7 +176,8 @@ class ChartMerger {
             for (std::size_t i = begin; i < end; ++i) {
                 check_cancelled();
                 unions[i] =
-                    flattened_union(surface_, members_, std::move(faces[i]), limits_, total_area_);
+                    flattened_union(surface_, members_, std::move(faces[i]), limits_, total_area_,
+                                    is_large(pairs[i]) ? max_large_union_energy : max_union_energy);
             }
         });
         for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -180,7 +205,8 @@ class ChartMerger {
     std::vector<Corner> seams_;            ///< One of the two edges between two charts each.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> failed_;  ///< Ascending.
     double total_area_ = 0.0;
-    double faces_left_;  ///< The number of faces of unions that may still be tried.
+    double faces_left_;        ///< The number of faces of unions that may still be tried.
+    double large_faces_left_;  ///< The same with charts that are not small.
 };
 
 }  // namespace

@@ -17,10 +17,6 @@ namespace {
 
 /// A projection with at most this stretch is as good as a flattened chart.
 constexpr double isometric_stretch = 1.001;
-/// The largest mean of the symmetric Dirichlet energy of a union of charts, relative to that of an
-/// isometric map.
-constexpr double max_union_energy = 1.02;
-
 std::array<glm::dvec2, 3> corners_of(const ChartMesh& chart, std::size_t index,
                                      std::span<const glm::dvec2> coordinates) {
     const glm::uvec3& v = chart.vertices[index];
@@ -56,8 +52,17 @@ class ChartFlattener {
         flatten(std::move(parts), result);
     }
 
+    /// Flattens connected faces, without dividing them. \return none if that fails
+    std::optional<FlatChart> attempt(std::vector<std::uint32_t> faces) {
+        members_.assign(faces);
+        FlatChart chart;
+        chart.mesh = chart_mesh(surface_, members_, std::move(faces));
+        if (problem_of(chart)) return std::nullopt;
+        return chart;
+    }
+
     /// Flattens a connected union of charts, without dividing it.
-    std::optional<FlatChart> flattened(std::vector<std::uint32_t> faces) {
+    std::optional<FlatChart> flattened(std::vector<std::uint32_t> faces, double max_energy) {
         members_.assign(faces);
         FlatChart chart;
         chart.mesh = chart_mesh(surface_, members_, std::move(faces));
@@ -72,7 +77,7 @@ class ChartFlattener {
             energy += surface_.areas[face] * (largest + smallest + 1.0 / largest + 1.0 / smallest);
             chart.area += surface_.areas[face];
         }
-        if (!(energy <= 4.0 * max_union_energy * chart.area)) return std::nullopt;
+        if (!(energy <= 4.0 * max_energy * chart.area)) return std::nullopt;
         align_to_box(chart);
         if (end_of_long(chart)) return std::nullopt;
         return chart;
@@ -88,14 +93,8 @@ class ChartFlattener {
             members_.assign(part);
             FlatChart chart;
             chart.mesh = chart_mesh(surface_, members_, std::move(part));
-            std::optional<std::uint32_t> problem = try_flatten(chart);
+            const std::optional<std::uint32_t> problem = problem_of(chart);
             if (!problem) {
-                align_to_box(chart);
-                if (chart.mesh.faces.size() > 1) problem = end_of_long(chart);
-            }
-            if (!problem) {
-                for (const std::uint32_t face : chart.mesh.faces)
-                    chart.area += surface_.areas[face];
                 result.push_back(std::move(chart));
                 continue;
             }
@@ -104,6 +103,17 @@ class ChartFlattener {
             for (auto each = parts.rbegin(); each != parts.rend(); ++each)
                 waiting.push_back(std::move(*each));
         }
+    }
+
+    /// Fills a chart. \return a face with a problem, as an index of the chart
+    std::optional<std::uint32_t> problem_of(FlatChart& chart) const {
+        std::optional<std::uint32_t> problem = try_flatten(chart);
+        if (problem) return problem;
+        align_to_box(chart);
+        if (chart.mesh.faces.size() > 1) problem = end_of_long(chart);
+        for (const std::uint32_t face : chart.mesh.faces)
+            chart.area += surface_.areas[face];
+        return problem;
     }
 
     /// \return a face with a problem, as an index of the chart
@@ -245,13 +255,121 @@ class ChartFlattener {
     double min_area_;
 };
 
-/// The faces of each chart, ascending; connected parts of a chart are charts of their own.
-std::vector<std::vector<std::uint32_t>> faces_by_chart(const Segmentation& segmentation) {
-    std::vector<std::vector<std::uint32_t>> result(segmentation.count);
-    for (std::uint32_t face = 0; face < segmentation.chart.size(); ++face)
-        result[segmentation.chart[face]].push_back(face);
-    return result;
-}
+/// Narrower limits for the parts of charts that cannot be flattened.
+constexpr std::array<ChartLimits, 2> narrow_limits{ChartLimits{0.873, 0.16, 1.6},
+                                                   ChartLimits{0.524, 0.07, 0.6}};
+
+/// Flattens all charts of a segmentation; those that fail are divided within narrower limits, and
+/// at last in halves.
+class LimitLadder {
+  public:
+    LimitLadder(const AtlasSurface& surface, Segmentation& segmentation, ChartMembers& members,
+                const FlatnessLimits& limits)
+        : surface_(surface),
+          segmentation_(segmentation),
+          members_(members),
+          limits_(limits),
+          total_(std::accumulate(surface.areas.begin(), surface.areas.end(), 0.0)) {}
+
+    std::vector<FlatChart> flattened() {
+        std::vector<std::vector<std::uint32_t>> charts(segmentation_.count);
+        for (std::uint32_t face = 0; face < segmentation_.chart.size(); ++face)
+            charts[segmentation_.chart[face]].push_back(face);
+        for (const ChartLimits& narrower : narrow_limits) {
+            charts = attempt(std::move(charts));
+            if (charts.empty()) break;
+            charts = divided_within(narrower, charts);
+        }
+        finish(std::move(charts));
+        std::sort(result_.begin(), result_.end(), [](const FlatChart& a, const FlatChart& b) {
+            return a.mesh.faces.front() < b.mesh.faces.front();
+        });
+        return std::move(result_);
+    }
+
+  private:
+    using Charts = std::vector<std::vector<std::uint32_t>>;  ///< Faces, ascending.
+
+    /// Calls body(i) for all charts, the largest first, so that threads end at about the same time.
+    template <typename Body>
+    void for_each(const Charts& charts, const Body& body) const {
+        std::vector<std::uint32_t> order(charts.size());
+        std::iota(order.begin(), order.end(), 0U);
+        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return charts[a].size() > charts[b].size();
+        });
+        parallel_for(order.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                check_cancelled();
+                body(order[i]);
+            }
+        });
+    }
+
+    /// Flattens charts. \return those for which it fails
+    Charts attempt(Charts charts) {
+        std::vector<std::optional<FlatChart>> flat(charts.size());
+        for_each(charts, [&](std::size_t i) {
+            flat[i] = ChartFlattener(surface_, members_, limits_, total_).attempt(charts[i]);
+        });
+        Charts failed;
+        for (std::size_t i = 0; i < charts.size(); ++i) {
+            if (flat[i])
+                result_.push_back(std::move(*flat[i]));
+            else
+                failed.push_back(std::move(charts[i]));
+        }
+        return failed;
+    }
+
+    /// Divides charts, and straightens the borders of their parts.
+    Charts divided_within(const ChartLimits& limits, const Charts& charts) {
+        Charts parts(charts.size());
+        for_each(charts, [&](std::size_t i) {
+            parts[i] = divided_part(surface_, segmentation_, charts[i], limits);
+        });
+        // Old charts have no number: they do not change.
+        std::fill(segmentation_.chart.begin(), segmentation_.chart.end(), 0U);
+        std::vector<std::uint32_t> group{no_face};
+        for (std::uint32_t i = 0; i < charts.size(); ++i) {
+            const auto first = static_cast<std::uint32_t>(group.size());
+            for (std::size_t k = 0; k < charts[i].size(); ++k) {
+                const std::uint32_t part = first + parts[i][k];
+                segmentation_.chart[charts[i][k]] = part;
+                if (part >= group.size()) group.resize(part + 1, i);
+            }
+        }
+        segmentation_.count = group.size();
+        replace_borders(surface_, segmentation_, group);
+        separate_components(surface_, segmentation_);
+        Charts result(segmentation_.count);
+        for (const std::vector<std::uint32_t>& chart : charts)
+            for (const std::uint32_t face : chart)
+                result[segmentation_.chart[face]].push_back(face);
+        std::erase_if(result, [](const auto& faces) { return faces.empty(); });
+        for (const std::vector<std::uint32_t>& faces : result)
+            members_.join(faces);
+        return result;
+    }
+
+    /// Flattens charts, and divides them until that does not fail.
+    void finish(Charts charts) {
+        std::vector<std::vector<FlatChart>> parts(charts.size());
+        for_each(charts, [&](std::size_t i) {
+            ChartFlattener(surface_, members_, limits_, total_)
+                .flatten(std::move(charts[i]), parts[i]);
+        });
+        for (std::vector<FlatChart>& each : parts)
+            std::move(each.begin(), each.end(), std::back_inserter(result_));
+    }
+
+    const AtlasSurface& surface_;
+    Segmentation& segmentation_;
+    ChartMembers& members_;
+    const FlatnessLimits& limits_;
+    double total_;  ///< Area of the surface.
+    std::vector<FlatChart> result_;
+};
 
 }  // namespace
 
@@ -268,33 +386,18 @@ std::vector<LatticePoint> on_lattice(std::span<const glm::dvec2> coordinates, do
     return result;
 }
 
-std::vector<FlatChart> flat_charts(const AtlasSurface& surface, const Segmentation& segmentation,
+std::vector<FlatChart> flat_charts(const AtlasSurface& surface, Segmentation& segmentation,
                                    ChartMembers& members, const FlatnessLimits& limits) {
-    std::vector<std::vector<std::uint32_t>> faces = faces_by_chart(segmentation);
-    std::vector<std::vector<FlatChart>> parts(faces.size());
-    const double total = std::accumulate(surface.areas.begin(), surface.areas.end(), 0.0);
-    // The largest first, so that threads end at about the same time.
-    std::vector<std::uint32_t> order(faces.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return faces[a].size() > faces[b].size();
-    });
-    parallel_for(order.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            ChartFlattener flattener(surface, members, limits, total);
-            flattener.flatten(std::move(faces[order[i]]), parts[order[i]]);
-        }
-    });
-    std::vector<FlatChart> result;
-    for (std::vector<FlatChart>& charts : parts)
-        std::move(charts.begin(), charts.end(), std::back_inserter(result));
-    return merged_charts(surface, members, limits, std::move(result));
+    return merged_charts(surface, members, limits,
+                         LimitLadder(surface, segmentation, members, limits).flattened());
 }
 
 std::optional<FlatChart> flattened_union(const AtlasSurface& surface, ChartMembers& members,
                                          std::vector<std::uint32_t> faces,
-                                         const FlatnessLimits& limits, double total_area) {
-    return ChartFlattener(surface, members, limits, total_area).flattened(std::move(faces));
+                                         const FlatnessLimits& limits, double total_area,
+                                         double max_energy) {
+    return ChartFlattener(surface, members, limits, total_area)
+        .flattened(std::move(faces), max_energy);
 }
 
 std::vector<FlatChart> divided_further(const AtlasSurface& surface, ChartMembers& members,

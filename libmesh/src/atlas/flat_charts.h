@@ -48,19 +48,22 @@ void align_to_box(FlatChart& chart);
 /// Rounds coordinates to the lattice.
 std::vector<LatticePoint> on_lattice(std::span<const glm::dvec2> coordinates, double scale);
 
-/// Flattens all charts, and merges small ones.
+/// Flattens all charts, and merges small ones. Charts that cannot be flattened are divided within
+/// narrower limits of their normals, and at last in halves.
 /// \param members  of the charts of the segmentation, all with part 0
 /// \return in a fixed order. Each chart is injective on the lattice and within the limits
-std::vector<FlatChart> flat_charts(const AtlasSurface& surface, const Segmentation& segmentation,
+std::vector<FlatChart> flat_charts(const AtlasSurface& surface, Segmentation& segmentation,
                                    ChartMembers& members, const FlatnessLimits& limits);
 
 /// Flattens a connected union of charts.
 /// \param faces  ascending, of one chart of `members`. \param total_area  of the surface
-/// \return none if it overlaps itself, exceeds the limits or is distorted much more than charts
-///         are
+/// \param max_energy  the largest mean of the symmetric Dirichlet energy, relative to that of an
+///         isometric map
+/// \return none if it overlaps itself or exceeds the limits
 std::optional<FlatChart> flattened_union(const AtlasSurface& surface, ChartMembers& members,
                                          std::vector<std::uint32_t> faces,
-                                         const FlatnessLimits& limits, double total_area);
+                                         const FlatnessLimits& limits, double total_area,
+                                         double max_energy);
 
 /// Merges small charts with neighbors as long as the unions can be flattened. The number of
 /// attempts is bounded, so that the time stays linear.

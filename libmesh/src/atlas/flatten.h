@@ -44,7 +44,7 @@ class ChartMembers {
             part_[faces[i]] = part;
         }
     }
-    /// Makes the faces of several charts one chart. assign() is due next; no other thread may work.
+    /// Makes faces a chart of their own. assign() is due next; no other thread may work.
     void join(std::span<const std::uint32_t> faces) {
         const std::uint32_t chart = next_chart_++;
         for (const std::uint32_t face : faces)

@@ -36,9 +36,11 @@ using Chain = std::vector<Corner>;  ///< Edges of one chart, each beginning wher
 
 class BorderStraightener {
   public:
-    BorderStraightener(const AtlasSurface& surface, Segmentation& segmentation)
+    BorderStraightener(const AtlasSurface& surface, Segmentation& segmentation,
+                       std::span<const std::uint32_t> group)
         : surface_(surface),
-          normals_(segmentation.smooth_normals),
+          segmentation_(segmentation),
+          group_(group),
           chart_(segmentation.chart),
           face_counts_(segmentation.count, 0),
           corner_at_(surface.positions.size(), no_corner),
@@ -90,9 +92,11 @@ class BorderStraightener {
     [[nodiscard]] std::uint32_t chart_across(Corner edge) const {
         return chart_[surface_.opposite[edge] / 3];
     }
-    /// Of the two sides of a border, the one of the smaller chart.
+    /// True for one of the two sides of a border that may move.
     [[nodiscard]] bool is_forward_border(Corner edge) const {
-        return is_joined(edge) && chart_at(edge) < chart_across(edge);
+        return is_joined(edge) && chart_at(edge) < chart_across(edge) &&
+               group_[chart_at(edge)] == group_[chart_across(edge)] &&
+               group_[chart_at(edge)] != no_face;
     }
 
     /// True if a border passes through the vertex where an edge begins, and nothing else.
@@ -178,8 +182,9 @@ class BorderStraightener {
 
     /// The cost of an edge.
     [[nodiscard]] double cost_of(Corner edge) const {
-        const double cosine = static_cast<double>(
-            glm::dot(normals_[edge / 3], normals_[surface_.opposite[edge] / 3]));
+        const double cosine =
+            static_cast<double>(glm::dot(segmentation_.smooth_normal(edge / 3),
+                                         segmentation_.smooth_normal(surface_.opposite[edge] / 3)));
         const double crease =
             std::clamp((smooth_cosine - cosine) / (smooth_cosine - sharp_cosine), 0.0, 1.0);
         return surface_.edge_length(edge) * (1.0 - crease_bonus * crease);
@@ -444,7 +449,8 @@ class BorderStraightener {
     }
 
     const AtlasSurface& surface_;
-    const std::vector<glm::vec3>& normals_;
+    const Segmentation& segmentation_;
+    std::span<const std::uint32_t> group_;
     std::vector<std::uint32_t>& chart_;
     std::vector<std::uint32_t> face_counts_;
     std::vector<Corner> corner_at_;       ///< For each vertex, one of its corners.
@@ -458,8 +464,9 @@ class BorderStraightener {
 
 }  // namespace
 
-void replace_borders(const AtlasSurface& surface, Segmentation& segmentation) {
-    if (segmentation.count > 1) BorderStraightener(surface, segmentation).straighten();
+void replace_borders(const AtlasSurface& surface, Segmentation& segmentation,
+                     std::span<const std::uint32_t> group) {
+    if (segmentation.count > 1) BorderStraightener(surface, segmentation, group).straighten();
 }
 
 }  // namespace relief::detail

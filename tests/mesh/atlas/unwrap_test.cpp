@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "atlas/charts.h"
 #include "hard_cases/mesh_changes.h"
 #include "hard_cases/random_meshes.h"
 #include "support/hard_meshes.h"
@@ -207,6 +208,83 @@ TEST(Unwrap, CutsABoxAtItsEdges) {
     }
 }
 
+// Small boxes are not smaller than the clusters that charts consist of.
+TEST(Unwrap, CutsManyBoxesAtTheirEdges) {
+    const Mesh one = box(1);
+    Mesh many;
+    for (std::uint32_t i = 0; i < 500; ++i) {
+        const auto first = static_cast<std::uint32_t>(many.positions.size());
+        for (const glm::vec3& position : one.positions)
+            many.positions.push_back(position + glm::vec3(2 * (i % 25), 4 * (i / 25), 0));
+        for (const glm::uvec3& triangle : one.triangles)
+            many.triangles.push_back(triangle + first);
+    }
+    Report report;
+    const detail::AtlasSurface surface = detail::atlas_surface(many, {}, report);
+    EXPECT_EQ(detail::divided(surface, {}).count, 6U * 500U);
+    // Charts of a small share of the area are joined, also across edges.
+    const Unwrapped unwrapped = unwrap(many);
+    EXPECT_LE(unwrapped.stats.charts, 6U * 500U);
+    EXPECT_NEAR(unwrapped.stats.stretch, 1.0, 1e-4);
+}
+
+/// A regular prism of height 2 with two caps.
+Mesh prism(std::uint32_t sides) {
+    Mesh mesh;
+    for (std::uint32_t i = 0; i < sides; ++i) {
+        const double turn = 2.0 * std::numbers::pi * i / sides;
+        for (const float height : {0.0F, 2.0F})
+            mesh.positions.emplace_back(std::cos(turn), std::sin(turn), height);
+    }
+    mesh.positions.insert(mesh.positions.end(), {{0, 0, 0}, {0, 0, 2}});
+    for (std::uint32_t i = 0; i < sides; ++i) {
+        const std::uint32_t a = 2 * i;
+        const std::uint32_t b = 2 * ((i + 1) % sides);
+        mesh.triangles.insert(
+            mesh.triangles.end(),
+            {{a, b, b + 1}, {a, b + 1, a + 1}, {b, a, 2 * sides}, {a + 1, b + 1, 2 * sides + 1}});
+    }
+    return mesh;
+}
+
+// Two caps, and the wall in two halves.
+TEST(Unwrap, DividesACylinderAsByHand) {
+    for (const std::uint32_t sides : {6U, 12U, 32U, 100U}) {
+        const Unwrapped unwrapped = unwrap(prism(sides));
+        EXPECT_LE(unwrapped.stats.charts, 4U) << sides;
+        EXPECT_NEAR(unwrapped.stats.stretch, 1.0, 1e-3) << sides;
+        EXPECT_EQ(broken_promise(unwrapped), "");
+    }
+}
+
+// The curvature of a part of the unit sphere is its area; that of a saddle is negative.
+TEST(Unwrap, BoundsTheCurvatureOfCharts) {
+    const auto divided = [](const Mesh& mesh, double curvature) {
+        Report report;
+        const detail::AtlasSurface surface = detail::atlas_surface(mesh, {}, report);
+        detail::ChartLimits limits;
+        limits.cone = std::numbers::pi;
+        limits.spread = 2.0;
+        limits.curvature = curvature;
+        const detail::Segmentation segmentation = detail::divided(surface, limits);
+        std::vector<double> areas(segmentation.count, 0.0);
+        for (std::size_t face = 0; face < surface.areas.size(); ++face)
+            areas[segmentation.chart[face]] += surface.areas[face] * surface.unit * surface.unit;
+        return areas;
+    };
+    const Mesh sphere = make_sphere(64, 32);
+    for (const double curvature : {0.5, 1.5, 2.5}) {
+        const std::vector<double> areas = divided(sphere, curvature);
+        EXPECT_LE(*std::max_element(areas.begin(), areas.end()), 1.1 * curvature);
+        EXPECT_GE(static_cast<double>(areas.size()), 4.0 * std::numbers::pi / (1.1 * curvature));
+    }
+    Mesh saddle = test::flat_grid(40);
+    for (glm::vec3& p : saddle.positions)
+        p.z = p.x * p.y / 20.0F;
+    EXPECT_EQ(divided(saddle, 10.0).size(), 1U);
+    EXPECT_GT(divided(saddle, 0.5).size(), 1U);
+}
+
 // Borders between charts are as short as those of a division by hand. Jagged ones have seams of
 // 7.3, 9.1 and 11.5.
 TEST(Unwrap, HasStraightSeams) {
@@ -218,7 +296,7 @@ TEST(Unwrap, HasStraightSeams) {
         p *= 1.0F + 0.08F * std::sin(7.0F * p.x + 1.0F) * std::sin(6.0F * p.y + 2.0F) *
                         std::sin(8.0F * p.z + 0.5F);
     EXPECT_LT(seams(sphere), 7.0);
-    EXPECT_LT(seams(make_torus(0.4F, 48, 24)), 9.5);
+    EXPECT_LT(seams(make_torus(0.4F, 48, 24)), 8.0);
 }
 
 TEST(Unwrap, MapsAPlaneToOneRectangle) {
@@ -272,7 +350,7 @@ Mesh dented_plate(std::uint32_t side) {
 TEST(Unwrap, MergesSmallCharts) {
     const Unwrapped unwrapped = unwrap(dented_plate(84));
     EXPECT_EQ(broken_promise(unwrapped), "");
-    EXPECT_LE(unwrapped.stats.charts, 40U);
+    EXPECT_LE(unwrapped.stats.charts, 45U);
     EXPECT_LE(unwrapped.stats.small_charts, 2U);
     EXPECT_LT(unwrapped.stats.stretch, 1.03);
 }
@@ -416,6 +494,7 @@ TEST(Unwrap, FillsTiles) {
     sphere.texcoords = {};
     UnwrapOptions options;
     options.size = {128, 128};
+    options.split_hard = 0.0;  // Many charts.
     const AtlasStats single = unwrap(sphere, options).stats;
     options.tiles = 12;
     const Unwrapped unwrapped = unwrap(sphere, options);
