@@ -172,6 +172,39 @@ Atlas packed_atlas(const AtlasSurface& surface, std::vector<FlatChart> charts,
     }
 }
 
+/// Divides a surface into charts, and packs them.
+Atlas new_atlas(const AtlasSurface& surface, const UnwrapOptions& options, Layout layout) {
+    const Segmentation segmentation = during("dividing into charts", [&] {
+        Segmentation merged = divided(surface, ChartLimits{});
+        straighten_borders(surface, merged);
+        return merged;
+    });
+
+    const double area = std::accumulate(surface.areas.begin(), surface.areas.end(), 0.0);
+    const glm::dvec2 size(options.size);
+    // Triangles cannot be divided, so that the longest edge must fit into the map.
+    double longest = 0.0;
+    for (Corner edge = 0; edge < surface.opposite.size(); ++edge)
+        longest = std::max(longest, surface.edge_length(edge));
+    const double texels_per_unit =
+        options.texels_per_unit
+            ? *options.texels_per_unit * surface.unit
+            : std::min(std::sqrt(expected_use * options.tiles * size.x * size.y / area),
+                       std::max(size.x, size.y) / longest);
+    FlatnessLimits limits;
+    limits.max_stretch = options.max_stretch;
+    limits.lattice_scale = texels_per_unit * layout.lattice_size / std::max(size.x, size.y);
+    limits.max_side = max_overlength * std::max(size.x, size.y) / texels_per_unit;
+    ChartMembers members(segmentation.chart);
+    std::vector<FlatChart> charts = during(
+        "flattening charts", [&] { return flat_charts(surface, segmentation, members, limits); });
+    if (options.texels_per_unit) layout.packing.texels_per_unit = texels_per_unit;
+    const DensityScale density(surface, options.densities);
+    for (FlatChart& chart : charts)
+        density.apply(chart);
+    return packed_atlas(surface, std::move(charts), members, limits, density, layout);
+}
+
 /// Packs existing charts, and reports those that overlap themselves.
 Atlas repacked_atlas(std::vector<FlatChart> charts, const Layout& layout, Report& report) {
     Atlas atlas;
@@ -207,6 +240,9 @@ glm::vec2 texcoord_of(const LatticePoint& point, int tile, double lattice_size) 
 /// Fills the coordinates and charts of triangles. \return the charts of faces
 FaceCharts fill_corners(const AtlasSurface& surface, const Atlas& atlas, double lattice_size,
                         Unwrapped& result) {
+    const std::size_t triangle_count = surface.face_of_triangle.size();
+    result.corner_texcoords.assign(3 * triangle_count, glm::vec2(0.0F));
+    result.chart.assign(triangle_count, std::nullopt);
     struct Place {
         std::uint32_t chart = 0, index = 0;
     };
@@ -219,7 +255,7 @@ FaceCharts fill_corners(const AtlasSurface& surface, const Atlas& atlas, double 
             charts.chart[faces[i]] = c;
         }
     }
-    for (std::size_t t = 0; t < surface.face_of_triangle.size(); ++t) {
+    for (std::size_t t = 0; t < triangle_count; ++t) {
         const std::uint32_t face = surface.face_of_triangle[t];
         if (face == no_face) continue;
         const Place& place = places[face];
@@ -265,15 +301,16 @@ Unwrapped unwrap(const Mesh& mesh, const UnwrapOptions& options, Report& report)
     const ProgressStage stage("unwrapping");
     if (options.stack) return stacked(mesh, options, report);
     Unwrapped result;
-    result.corner_texcoords.assign(3 * mesh.triangles.size(), glm::vec2(0.0F));
-    result.chart.assign(mesh.triangles.size(), std::nullopt);
     const AtlasSurface surface = during("joining triangles", [&] {
         return atlas_surface(mesh,
                              {options.split_materials, options.keep_seams || options.repack,
                               options.split_hard, options.first_vertices, options.densities},
                              report);
     });
-    if (surface.faces.empty()) return result;
+    if (surface.faces.empty()) {
+        fill_corners(surface, {}, 1.0, result);
+        return result;
+    }
     Layout layout{{options.size, options.padding, options.alignment, std::nullopt},
                   options.tiles,
                   lattice_size_of(options)};
@@ -286,37 +323,10 @@ Unwrapped unwrap(const Mesh& mesh, const UnwrapOptions& options, Report& report)
         result.stats = stats_of(surface, result.corner_texcoords, face_charts, options);
         return result;
     }
-    const Segmentation segmentation = during("dividing into charts", [&] {
-        Segmentation merged = divided(surface, ChartLimits{});
-        straighten_borders(surface, merged);
-        return merged;
-    });
-
-    const double area = std::accumulate(surface.areas.begin(), surface.areas.end(), 0.0);
-    const glm::dvec2 size(options.size);
-    // Triangles cannot be divided, so that the longest edge must fit into the map.
-    double longest = 0.0;
-    for (Corner edge = 0; edge < surface.opposite.size(); ++edge)
-        longest = std::max(longest, surface.edge_length(edge));
-    const double texels_per_unit =
-        options.texels_per_unit
-            ? *options.texels_per_unit * surface.unit
-            : std::min(std::sqrt(expected_use * options.tiles * size.x * size.y / area),
-                       std::max(size.x, size.y) / longest);
-    FlatnessLimits limits;
-    limits.max_stretch = options.max_stretch;
-    limits.lattice_scale = texels_per_unit * layout.lattice_size / std::max(size.x, size.y);
-    limits.max_side = max_overlength * std::max(size.x, size.y) / texels_per_unit;
-    ChartMembers members(segmentation.chart);
-    std::vector<FlatChart> charts = during(
-        "flattening charts", [&] { return flat_charts(surface, segmentation, members, limits); });
-    if (options.texels_per_unit) layout.packing.texels_per_unit = texels_per_unit;
-    const DensityScale density(surface, options.densities);
-    for (FlatChart& chart : charts)
-        density.apply(chart);
-    const Atlas atlas = packed_atlas(surface, std::move(charts), members, limits, density, layout);
+    Atlas atlas = new_atlas(surface, options, layout);
     const ProgressStage measuring("measuring charts");
     const FaceCharts face_charts = fill_corners(surface, atlas, layout.lattice_size, result);
+    atlas = {};  // Measuring needs memory too.
     result.stats = stats_of(surface, result.corner_texcoords, face_charts, options);
     return result;
 }
