@@ -172,6 +172,13 @@ Atlas packed_atlas(const AtlasSurface& surface, std::vector<FlatChart> charts,
     }
 }
 
+/// Returns the result of a stage of unwrapping.
+template <typename Work>
+auto during(const char* name, const Work& work) {
+    const ProgressStage stage(name);
+    return work();
+}
+
 /// Divides a surface into charts, and packs them.
 Atlas new_atlas(const AtlasSurface& surface, const UnwrapOptions& options, Layout layout) {
     const Segmentation segmentation = during("dividing into charts", [&] {
@@ -283,13 +290,6 @@ AtlasStats stats_of(const AtlasSurface& surface, std::span<const glm::vec2> corn
         texels / (static_cast<double>(options.size.x) * options.size.y * options.tiles);
     stats.safe_mip_level = safe_mip_level(options.padding);
     return stats;
-}
-
-/// Returns the result of a stage of unwrapping.
-template <typename Work>
-auto during(const char* name, const Work& work) {
-    const ProgressStage stage(name);
-    return work();
 }
 
 }  // namespace
