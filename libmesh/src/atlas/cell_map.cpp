@@ -7,13 +7,6 @@
 namespace relief::detail {
 namespace {
 
-/// Loops over words have blocks of a fixed size.
-constexpr std::size_t word_block = 4;
-
-std::size_t padded(std::size_t words) {
-    return (words + word_block - 1) / word_block * word_block;
-}
-
 bool meets_run(const BitWord* words, int begin, int end) {
     const int first = begin / word_bits;
     const int last = (end - 1) / word_bits;
@@ -39,15 +32,15 @@ CellMap::CellMap(int width, int height, int level_count)
         const int tables = i == 0 ? 1 : std::bit_width(static_cast<unsigned>(level.width));
         level.tables.resize(static_cast<std::size_t>(tables));
     }
-    blocked_.resize(padded(levels_.front().words));
+    blocked_.resize(levels_.front().words);
     clear();
 }
 
 void CellMap::clear() {
     for (Level& level : levels_) {
         for (std::vector<BitWord>& table : level.tables)
-            table.assign(level.words * static_cast<std::size_t>(level.height + 1) + word_block, 0);
-        level.longest_free.assign(static_cast<std::size_t>(level.height), level.width);
+            table.assign(level.words * static_cast<std::size_t>(level.height + 1), 0);
+        level.longest_free.assign(static_cast<std::size_t>(level.height), {0, level.width});
     }
 }
 
@@ -72,47 +65,50 @@ std::optional<CellMap::Position> CellMap::find(const CellMask& mask, const CellM
 
 std::optional<int> CellMap::free_column(const CellMask& mask, const Level& level, int y,
                                         int count) {
-    for (int row = 0; row < mask.height; ++row)
-        if (level.longest_free[static_cast<std::size_t>(y + row)] <
-            mask.longest[static_cast<std::size_t>(row)])
+    for (int row = 0; row < mask.height; ++row) {
+        const Run& free = level.longest_free[static_cast<std::size_t>(y + row)];
+        if (free.end - free.begin < mask.longest[static_cast<std::size_t>(row)])
             return std::nullopt;
-    const std::size_t words = padded(word_count(count));
+    }
+    const std::size_t words = word_count(count);
     // Positions beyond the last one are blocked.
-    std::fill_n(blocked_.begin(), words, ~BitWord{0});
-    std::fill_n(blocked_.begin(), count / word_bits, BitWord{0});
-    if (count % word_bits != 0)
-        blocked_[static_cast<std::size_t>(count / word_bits)] = ~BitWord{0} << (count % word_bits);
-    // From the middle outwards the widest rows come first, which block the most.
-    for (int i = 0; i < mask.height; ++i) {
-        const int row = mask.height / 2 + (i % 2 == 0 ? i / 2 : -(i / 2) - 1);
+    std::fill_n(blocked_.begin(), words, BitWord{0});
+    if (count % word_bits != 0) blocked_[words - 1] = ~BitWord{0} << (count % word_bits);
+    // The words before `begin` and from `end` on are blocked.
+    std::size_t begin = 0;
+    std::size_t end = words;
+    const auto blocks_all = [&](int row) {
         for (const Run& run : mask.row(row)) {
             // Two runs of 2^k cells cover it.
             const int length = run.end - run.begin;
             const int k = std::bit_width(static_cast<unsigned>(length)) - 1;
             const BitWord* const table = level.row(static_cast<std::size_t>(k), y + row);
-            block(table, run.begin, words);
-            if (length != 1 << k) block(table, run.end - (1 << k), words);
+            block(table, run.begin, begin, end);
+            if (length != 1 << k) block(table, run.end - (1 << k), begin, end);
         }
-        BitWord all = ~BitWord{0};
-        for (std::size_t w = 0; w < words; ++w)
-            all &= blocked_[w];
-        if (all == ~BitWord{0}) return std::nullopt;
+        while (begin < end && blocked_[begin] == ~BitWord{0})
+            ++begin;
+        while (begin < end && blocked_[end - 1] == ~BitWord{0})
+            --end;
+        return begin == end;
+    };
+    // Rows near each other block nearly the same positions, so that rows far from each other come
+    // first: the odd multiples of each power of two.
+    for (int step = static_cast<int>(std::bit_floor(static_cast<unsigned>(mask.height))); step > 0;
+         step /= 2) {
+        for (int row = step; row < mask.height; row += 2 * step)
+            if (blocks_all(row)) return std::nullopt;
     }
-    for (std::size_t w = 0; w < words; ++w) {
-        if (blocked_[w] != ~BitWord{0})
-            return static_cast<int>(w) * word_bits + std::countr_one(blocked_[w]);
-    }
-    return std::nullopt;
+    if (blocks_all(0)) return std::nullopt;
+    return static_cast<int>(begin) * word_bits + std::countr_one(blocked_[begin]);
 }
 
-void CellMap::block(const BitWord* table, int shift, std::size_t words) {
+void CellMap::block(const BitWord* table, int shift, std::size_t begin, std::size_t end) {
     // Words after the end of a row only matter for positions that are blocked anyway.
     const BitWord* const from = table + shift / word_bits;
     const int rest = shift % word_bits;
-    for (std::size_t w = 0; w < words; w += word_block) {
-        for (std::size_t i = w; i < w + word_block; ++i)
-            blocked_[i] |= (from[i] >> rest) | (from[i + 1] << 1 << (word_bits - 1 - rest));
-    }
+    for (std::size_t i = begin; i < end; ++i)
+        blocked_[i] |= (from[i] >> rest) | (from[i + 1] << 1 << (word_bits - 1 - rest));
 }
 
 bool CellMap::is_free(const CellMask& mask, const Position& at) const {
@@ -166,11 +162,11 @@ void CellMap::occupy(const CellMask& mask, const Position& at) {
         }
         if (i == 0) continue;
         for (int row = at.y >> i; row <= (at.y + mask.height - 1) >> i; ++row)
-            renew_tables(level, row);
+            renew_tables(level, row, {at.x >> i, ((at.x + mask.width - 1) >> i) + 1});
     }
 }
 
-void CellMap::renew_tables(Level& level, int y) {
+void CellMap::renew_tables(Level& level, int y, const Run& changed) {
     for (std::size_t k = 0; k + 1 < level.tables.size(); ++k) {
         const BitWord* const from = level.row(k, y);
         BitWord* const to = level.row(k + 1, y);
@@ -178,7 +174,11 @@ void CellMap::renew_tables(Level& level, int y) {
         const auto skipped = static_cast<std::size_t>(shift / word_bits);
         const int rest = shift % word_bits;
         const std::size_t words = level.words - 1;
-        for (std::size_t w = 0; w < words; ++w) {
+        // Runs of 2 * shift cells that begin elsewhere don't reach the changed cells.
+        const auto begin =
+            static_cast<std::size_t>(std::max(changed.begin - 2 * shift + 1, 0) / word_bits);
+        const std::size_t end = word_count(changed.end);
+        for (std::size_t w = begin; w < end; ++w) {
             BitWord value = from[w];
             if (w + skipped < words)
                 value |= (from[w + skipped] >> rest) |
@@ -186,15 +186,16 @@ void CellMap::renew_tables(Level& level, int y) {
             to[w] = value;
         }
     }
+    Run& longest = level.longest_free[static_cast<std::size_t>(y)];
+    if (changed.end <= longest.begin || changed.begin >= longest.end) return;
     // The longest run of free cells: the gap between two runs of occupied ones.
     const BitWord* const words = level.row(0, y);
-    int longest = 0;
+    longest = {0, 0};
     for (int x = next_bit(words, 0, level.width, false); x < level.width;) {
         const int end = next_bit(words, x, level.width, true);
-        longest = std::max(longest, end - x);
+        if (end - x > longest.end - longest.begin) longest = {x, end};
         x = next_bit(words, end, level.width, false);
     }
-    level.longest_free[static_cast<std::size_t>(y)] = longest;
 }
 
 }  // namespace relief::detail

@@ -50,7 +50,7 @@ class CellMap {
         std::size_t words = 0;  ///< In a row, with one that is always 0.
         /// Table k has a bit for each position from which a run of 2^k cells meets an occupied one.
         std::vector<std::vector<BitWord>> tables;
-        std::vector<int> longest_free;  ///< For each row, the length of its longest free run.
+        std::vector<Run> longest_free;  ///< For each row, its longest run of free cells.
 
         [[nodiscard]] BitWord* row(std::size_t table, int y) {
             return tables[table].data() + words * static_cast<std::size_t>(y);
@@ -62,9 +62,10 @@ class CellMap {
 
     [[nodiscard]] bool is_free(const CellMask& mask, const Position& at) const;
     std::optional<int> free_column(const CellMask& mask, const Level& level, int y, int count);
-    /// Blocks the positions whose bit, shifted, is set.
-    void block(const BitWord* table, int shift, std::size_t words);
-    static void renew_tables(Level& level, int y);
+    /// Blocks the positions whose bit, shifted, is set, in the words [begin, end).
+    void block(const BitWord* table, int shift, std::size_t begin, std::size_t end);
+    /// \param changed  the cells of row `y` that may have become occupied
+    static void renew_tables(Level& level, int y, const Run& changed);
 
     std::vector<Level> levels_;
     std::vector<BitWord> blocked_;

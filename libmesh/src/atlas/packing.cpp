@@ -23,10 +23,8 @@ namespace {
 
 /// The largest number of cells along the longer side of a map.
 constexpr int max_cells = 1024;
-/// Positions are searched on cells 2 or 4 times as large, the smaller ones for charts up to this
-/// many of them.
-constexpr int max_search_cells = 32;
-constexpr int level_count = 3;
+/// Positions are searched on cells twice as large.
+constexpr int search_level = 1;
 /// Charts up to this many search cells begin where the last one of the same size was placed, less
 /// some rows. Larger ones try all positions.
 constexpr int max_hinted_cells = 16;
@@ -35,6 +33,12 @@ constexpr int hint_slack = 8;
 constexpr std::size_t max_freely_rotated = 64;
 /// Above this number of charts, the first attempt should succeed.
 constexpr std::size_t max_varied = 1000;
+/// Of at least so many charts, a quarter estimates the scale in a quarter of the map, unless the
+/// longest chart exceeds this share of its height, or the quarter has fewer rows of cells.
+constexpr std::size_t min_sampled = 5000;
+constexpr std::size_t sample_share = 4;
+constexpr double max_sampled_length = 0.5;
+constexpr int min_sampled_rows = 64;
 /// The share of the map that charts and half of their padding cover at first.
 constexpr double expected_use = 0.75;
 /// The rise of the scale after a success; it is halved if no attempt succeeds.
@@ -60,7 +64,7 @@ int cell_of(const PackingOptions& options) {
 /// that the estimated scale is exact for them, and each pack takes long.
 std::size_t attempts_for(std::size_t chart_count) {
     const std::size_t attempts = std::min(10 * chart_count, 4000 / (chart_count + 40));
-    return std::clamp<std::size_t>(attempts, 3, 80);
+    return std::clamp<std::size_t>(attempts, 2, 80);
 }
 
 glm::dvec2 rotated(const glm::dvec2& point, const glm::dvec2& direction) {
@@ -127,7 +131,6 @@ class Packer {
           cell_(cell_of(options)),
           outlines_(charts.size()),
           poses_(charts.size()),
-          levels_(charts.size()),
           places_(charts.size()) {
         const double diagonal = std::sqrt(0.5);
         parallel_for(charts.size(), 16, [&](std::size_t begin, std::size_t end) {
@@ -151,7 +154,7 @@ class Packer {
     /// Places all charts, until one does not fit into `rows` rows of cells.
     /// \return the index of this chart in the order
     std::optional<std::size_t> pack(const Rule& rule, int rows) {
-        CellMap map(options_.size.x / cell_, rows, level_count);
+        CellMap map(options_.size.x / cell_, rows, search_level + 1);
         hints_.fill(0);
         height_ = 0;
         for (std::size_t i = 0; i < rule.order.size(); ++i) {
@@ -195,13 +198,8 @@ class Packer {
             pose.offset = glm::dvec2(margin) - outline.low * scale;
             pose.mask = mask_of(border, outline.size * scale, margin, cell_);
         }
-        const int longest = std::max(poses[0].mask.width, poses[0].mask.height);
-        int level = 1;
-        while (level + 1 < level_count && longest >> level > max_search_cells)
-            ++level;
-        levels_[chart] = level;
         for (Pose& pose : poses)
-            prepare(pose, level);
+            prepare(pose);
         // Half turns; those of a rectangle change nothing.
         const std::size_t upright = poses.size();
         for (std::size_t i = 0; i < upright; ++i) {
@@ -212,12 +210,12 @@ class Packer {
             turned.offset =
                 glm::dvec2(mask.width, mask.height) * static_cast<double>(cell_) - poses[i].offset;
             turned.mask = half_turned(mask);
-            prepare(turned, level);
+            prepare(turned);
             poses.push_back(std::move(turned));
         }
     }
-    static void prepare(Pose& pose, int level) {
-        pose.coarse = coarser(pose.mask, level);
+    static void prepare(Pose& pose) {
+        pose.coarse = coarser(pose.mask, search_level);
         pose.lower = lower_border(pose.mask);
     }
     static bool is_full(const CellMask& mask) {
@@ -226,17 +224,16 @@ class Packer {
     }
 
     bool place(std::uint32_t chart, const Rule& rule, CellMap& map) {
-        const int level = levels_[chart];
         double least = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < poses_[chart].size(); ++i) {
             const Pose& pose = poses_[chart][i];
-            int* const hint = hint_of(pose.coarse, level);
+            int* const hint = hint_of(pose.coarse);
             // Higher positions cost more, even if charts slide down by one large cell.
             const double highest =
-                (least - pose.mask.height) / (1.0 + rule.lower_weight) + (1 << level);
+                (least - pose.mask.height) / (1.0 + rule.lower_weight) + (1 << search_level);
             const int end = static_cast<int>(std::min<double>(map.height(), highest));
             std::optional<CellMap::Position> at =
-                map.find(pose.mask, pose.coarse, level, hint != nullptr ? *hint : 0, end);
+                map.find(pose.mask, pose.coarse, search_level, hint != nullptr ? *hint : 0, end);
             if (!at) continue;
             if (hint != nullptr) *hint = std::max(at->y - hint_slack, 0);
             at = map.slid(pose.mask, pose.lower, *at);
@@ -253,8 +250,8 @@ class Packer {
         return true;
     }
     /// The row to begin with for small charts of one size; null for others.
-    int* hint_of(const CellMask& coarse, int level) {
-        if (level > 1 || std::max(coarse.width, coarse.height) > max_hinted_cells) return nullptr;
+    int* hint_of(const CellMask& coarse) {
+        if (std::max(coarse.width, coarse.height) > max_hinted_cells) return nullptr;
         return &hints_[static_cast<std::size_t>((coarse.width - 1) * max_hinted_cells +
                                                 coarse.height - 1)];
     }
@@ -263,7 +260,6 @@ class Packer {
     int cell_;
     std::vector<std::vector<Outline>> outlines_;
     std::vector<std::vector<Pose>> poses_;
-    std::vector<int> levels_;
     std::vector<Place> places_;
     std::array<int, std::size_t{max_hinted_cells} * max_hinted_cells> hints_{};
     int height_ = 0;
@@ -380,16 +376,47 @@ double largest_scale(std::span<const FlatChart> charts, const glm::dvec2& size) 
     return scale;
 }
 
-/// Estimates the scale at which charts fill the map, from one pack into a map that is too high.
+/// Packs charts into a map that is too high.
+/// \return the share of the rows in use that charts and their padding cover; none if there is too
+///         little room
+std::optional<double> covered_share(std::span<const FlatChart> charts,
+                                    const PackingOptions& options, double scale) {
+    Packer packer(charts, options);
+    packer.set_scale(scale);
+    const int rows = packer.rows();
+    if (packer.pack(Rules(charts).rule(0), 2 * rows)) return std::nullopt;
+    return PaddedArea(charts, options).at(scale) * rows /
+           (static_cast<double>(options.size.x) * options.size.y * packer.height());
+}
+
+/// Returns charts of all sizes, each standing for `sample_share` ones.
+std::vector<FlatChart> sample_of(std::span<const FlatChart> charts) {
+    const std::vector<std::uint32_t> order = Rules(charts).rule(0).order;
+    std::vector<FlatChart> sample;
+    for (std::size_t i = sample_share / 2; i < order.size(); i += sample_share)
+        sample.push_back(charts[order[i]]);
+    return sample;
+}
+
+/// Estimates the scale at which charts fill the map.
 double estimated_scale(std::span<const FlatChart> charts, const PackingOptions& options,
-                       double largest, Packer& packer) {
+                       double largest) {
     const PaddedArea area(charts, options);
     const double map_area = static_cast<double>(options.size.x) * options.size.y;
     const double first = std::min(area.scale_for(expected_use * map_area), largest);
-    packer.set_scale(first);
-    const int rows = packer.rows();
-    if (packer.pack(Rules(charts).rule(0), 2 * rows)) return 0.7 * first;
-    const double estimate = area.scale_for(area.at(first) * rows / packer.height());
+    double longest = 0.0;
+    for (const FlatChart& chart : charts)
+        longest = std::max({longest, chart.size.x, chart.size.y});
+    std::optional<double> share;
+    PackingOptions part = options;
+    part.size.y /= static_cast<int>(sample_share);
+    if (charts.size() >= min_sampled && first * longest <= max_sampled_length * part.size.y &&
+        part.size.y >= min_sampled_rows * cell_of(options))
+        share = covered_share(sample_of(charts), part, first);
+    else
+        share = covered_share(charts, options, first);
+    if (!share) return 0.7 * first;
+    const double estimate = area.scale_for(*share * map_area);
     return std::min(charts.size() > max_varied ? 0.985 * estimate : estimate, largest);
 }
 
@@ -407,7 +434,7 @@ Packing packed(std::span<const FlatChart> charts, const PackingOptions& options)
     RuleSearch search(charts);
     Packing packing;
     double scale = options.texels_per_unit ? *options.texels_per_unit
-                                           : estimated_scale(charts, options, largest, packer);
+                                           : estimated_scale(charts, options, largest);
     double step = scale_step;
     Rule rule = search.first();
     Rule best = rule;
