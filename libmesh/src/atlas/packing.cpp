@@ -15,6 +15,8 @@
 
 #include "atlas/cell_map.h"
 #include "atlas/cell_mask.h"
+#include "atlas/chart_outline.h"
+#include "atlas/separation.h"
 #include "parallel.h"
 #include "progress_stage.h"
 
@@ -64,45 +66,7 @@ int cell_of(const PackingOptions& options) {
 /// that the estimated scale is exact for them, and each pack takes long.
 std::size_t attempts_for(std::size_t chart_count) {
     const std::size_t attempts = std::min(10 * chart_count, 4000 / (chart_count + 40));
-    return std::clamp<std::size_t>(attempts, 2, 80);
-}
-
-glm::dvec2 rotated(const glm::dvec2& point, const glm::dvec2& direction) {
-    return {direction.x * point.x - direction.y * point.y,
-            direction.y * point.x + direction.x * point.y};
-}
-
-/// The border of a chart in one rotation.
-struct Outline {
-    glm::dvec2 direction{1.0, 0.0};  ///< The image of the x axis.
-    glm::dvec2 low{0.0};             ///< The corner of the box before it is shifted to the origin.
-    glm::dvec2 size{0.0};
-    std::vector<BorderSegment> border;
-};
-
-Outline outline_of(const FlatChart& chart, const glm::dvec2& direction) {
-    Outline outline;
-    outline.direction = direction;
-    outline.low = glm::dvec2(std::numeric_limits<double>::infinity());
-    glm::dvec2 high(-std::numeric_limits<double>::infinity());
-    for (Corner corner = 0; corner < chart.mesh.opposite.size(); ++corner) {
-        if (chart.mesh.opposite[corner] != no_corner) continue;
-        const glm::uvec3& v = chart.mesh.vertices[corner / 3];
-        const auto point = [&](Corner i) {
-            return rotated(chart.coordinates[v[static_cast<glm::length_t>(i % 3)]], direction);
-        };
-        const BorderSegment segment(point(corner), point(corner + 1));
-        // Borders are loops, so that each point is the first one of a segment.
-        outline.low = glm::min(outline.low, segment.first);
-        high = glm::max(high, segment.first);
-        outline.border.push_back(segment);
-    }
-    for (auto& [a, b] : outline.border) {
-        a -= outline.low;
-        b -= outline.low;
-    }
-    outline.size = high - outline.low;
-    return outline;
+    return std::clamp<std::size_t>(attempts, 2, chart_count <= max_freely_rotated ? 20 : 80);
 }
 
 /// A chart in one rotation at one scale.
@@ -188,15 +152,11 @@ class Packer {
         const double margin = margin_of(options_);
         std::vector<Pose>& poses = poses_[chart];
         poses.clear();
-        std::vector<BorderSegment> border;
         for (const Outline& outline : outlines_[chart]) {
-            border.clear();
-            for (const auto& [a, b] : outline.border)
-                border.emplace_back(a * scale, b * scale);
             Pose& pose = poses.emplace_back();
             pose.direction = outline.direction;
             pose.offset = glm::dvec2(margin) - outline.low * scale;
-            pose.mask = mask_of(border, outline.size * scale, margin, cell_);
+            pose.mask = mask_of(outline, scale, margin, cell_);
         }
         for (Pose& pose : poses)
             prepare(pose);
@@ -471,6 +431,9 @@ Packing packed(std::span<const FlatChart> charts, const PackingOptions& options)
         failures = 0;
         packer.set_scale(scale);
     }
+    if (!options.texels_per_unit && charts.size() <= max_freely_rotated)
+        raise_by_separation(charts, {options, margin_of(options), cell_of(options), largest},
+                            packing);
     return packing;
 }
 

@@ -7,12 +7,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "atlas/cell_map.h"
 #include "atlas/cell_mask.h"
+#include "atlas/chart_outline.h"
+#include "atlas/overlap_map.h"
 #include "hard_cases/random_meshes.h"
 #include "relief/mesh/unwrap.h"
 #include "support/shapes.h"
@@ -199,6 +205,186 @@ TEST(CellMap, FindsTheLowestPositionAndSlides) {
         EXPECT_FALSE(plain.is_free(mask, at.x - 1, at.y)) << i;
         map.occupy(mask, at);
         plain.occupy(mask, at.x, at.y);
+    }
+}
+
+/// The least weighted number of shared cells in a row, by a loop over all cells.
+OverlapMap::Best plain_best(const std::vector<PlainMap>& maps,
+                            const std::vector<std::int32_t>& weights, const CellMask& mask, int y,
+                            int begin, int end, int near_x) {
+    OverlapMap::Best best{0, std::numeric_limits<std::int64_t>::max()};
+    for (int x = std::max(begin, 0); x < std::min(end, maps[0].width - mask.width + 1); ++x) {
+        std::int64_t cost = 0;
+        for (std::size_t i = 0; i < maps.size(); ++i)
+            for (int row = 0; row < mask.height; ++row)
+                for (const Run& run : mask.row(row))
+                    for (int cell = run.begin; cell < run.end; ++cell)
+                        cost += maps[i].get(x + cell, y + row) ? weights[i] : 0;
+        if (cost < best.cost ||
+            (cost == best.cost && std::abs(x - near_x) < std::abs(best.x - near_x)))
+            best = {x, cost};
+    }
+    return best;
+}
+
+TEST(OverlapMap, FindsTheBestPositionOfARow) {
+    Dice dice(6);
+    OverlapMap map(150, 130);
+    std::vector<PlainMap> plain;
+    std::vector<CellMask> masks;
+    const std::vector<std::int32_t> weights{3, 0, 7, 1};
+    for (std::uint32_t chart = 0; chart < weights.size(); ++chart) {
+        masks.push_back(mask_of(jagged_ring(dice), {100.0, 100.0}, 1.0, 1));
+        const int x = static_cast<int>(45.0 * unit(dice));
+        const int y = static_cast<int>(25.0 * unit(dice));
+        map.insert(chart, masks[chart], {x, y});
+        plain.push_back({150, 130});
+        plain[chart].occupy(masks[chart], x, y);
+        if (chart != 0) continue;
+        map.remove(chart, masks[chart], {x, y});
+        map.insert(chart, masks[chart], {x, y});
+    }
+    std::vector<BorderSegment> border;
+    for (const auto& [a, b] : jagged_ring(dice))
+        border.emplace_back(a * 0.3, b * 0.3);
+    const CellMask mask = mask_of(border, {30.0, 30.0}, 1.0, 1);
+    for (const auto& [begin, end] : {std::pair(-5, 400), std::pair(20, 50), std::pair(100, 200)}) {
+        for (int y = 0; y + mask.height <= 130; y += 7) {
+            const OverlapMap::Best found =
+                map.best_in_row(mask, {y, begin, end}, 1, weights, begin + 9);
+            const OverlapMap::Best expected =
+                plain_best(plain, weights, mask, y, begin, end, begin + 9);
+            EXPECT_EQ(found.cost, expected.cost) << y;
+            EXPECT_EQ(found.x, expected.x) << y;
+        }
+    }
+}
+
+/// A chart whose border is a star-shaped polygon around `center`.
+FlatChart chart_of(const std::vector<glm::dvec2>& polygon, const glm::dvec2& center) {
+    FlatChart chart;
+    const auto count = static_cast<std::uint32_t>(polygon.size());
+    chart.coordinates = polygon;
+    chart.coordinates.push_back(center);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t next = (i + 1) % count;
+        chart.mesh.faces.push_back(i);
+        chart.mesh.vertices.emplace_back(i, next, count);
+        chart.mesh.opposite.insert(chart.mesh.opposite.end(),
+                                   {no_corner, 3 * next + 2, 3 * ((i + count - 1) % count) + 1});
+        const glm::dvec2 a = polygon[i] - center;
+        const glm::dvec2 b = polygon[next] - center;
+        chart.area += 0.5 * (a.x * b.y - a.y * b.x);
+        chart.size = glm::max(chart.size, polygon[i]);
+    }
+    return chart;
+}
+
+FlatChart random_chart(Dice& dice, double size) {
+    std::vector<double> radii(16);
+    for (double& each : radii)
+        each = size * (0.2 + 0.3 * unit(dice));
+    std::vector<BorderSegment> border;
+    append_loop({0.5 * size, 0.5 * size}, radii, false, border);
+    std::vector<glm::dvec2> polygon;
+    for (const BorderSegment& each : border)
+        polygon.push_back(each.first);
+    return chart_of(polygon, {0.5 * size, 0.5 * size});
+}
+
+double used_share(const std::vector<FlatChart>& charts, const PackingOptions& options) {
+    const double scale = packed(charts, options).texels_per_unit;
+    double area = 0.0;
+    for (const FlatChart& each : charts)
+        area += each.area * scale * scale;
+    return area / (static_cast<double>(options.size.x) * options.size.y);
+}
+
+// 16 squares with their padding fill the map if each has 60 texels: 87.9 %.
+TEST(Packing, FillsTheMapWithSquares) {
+    const FlatChart square = chart_of({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {0.5, 0.5});
+    PackingOptions options;
+    options.size = glm::ivec2(256);
+    const double used = used_share(std::vector<FlatChart>(16, square), options);
+    EXPECT_LE(used, 240.0 * 240.0 / (256.0 * 256.0));
+    EXPECT_GT(used, 0.86);
+}
+
+// Two angles of three squares fill a rectangle if one of them is rotated into the notch of the
+// other; boxes around them would fill at most 59 %.
+TEST(Packing, FillsNotches) {
+    const FlatChart angle = chart_of({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, {0.5, 0.5});
+    PackingOptions options;
+    options.size = {320, 480};
+    EXPECT_GT(used_share({angle, angle}, options), 0.8);
+}
+
+TEST(Packing, FillsTheMapWithRandomCharts) {
+    PackingOptions options;
+    options.size = glm::ivec2(1024);
+    options.padding = 2;
+    for (const auto& [count, expected] : {std::pair(12, 0.66), std::pair(150, 0.63)}) {
+        Dice dice(7);
+        std::vector<FlatChart> charts;
+        for (int i = 0; i < count; ++i)
+            charts.push_back(random_chart(dice, 0.5 + unit(dice)));
+        EXPECT_GT(used_share(charts, options), expected) << count << " charts";
+    }
+}
+
+/// The border of a packed chart, texels.
+std::vector<BorderSegment> placed_border(const FlatChart& chart, const Packing& packing,
+                                         std::size_t index) {
+    const Outline outline = outline_of(chart, {1.0, 0.0});
+    std::vector<BorderSegment> border;
+    for (const auto& [a, b] : outline.border)
+        border.emplace_back(
+            placed(a + outline.low, packing.placements[index], packing.texels_per_unit),
+            placed(b + outline.low, packing.placements[index], packing.texels_per_unit));
+    return border;
+}
+
+// Of two polygons that don't intersect, a corner of one is nearest to the other.
+double distance(const std::vector<BorderSegment>& a, const std::vector<BorderSegment>& b) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const BorderSegment& first : a) {
+        for (const BorderSegment& second : b) {
+            least = std::min({least, distance(first.first, second), distance(second.first, first)});
+        }
+    }
+    return least;
+}
+
+// Few charts are separated, many are only placed; both keep the distances, for a map that is not
+// square and no multiple of the cells too.
+TEST(Packing, KeepsThePadding) {
+    for (const int count : {10, 90}) {
+        for (const int padding : {0, 3, 8}) {
+            Dice dice(static_cast<std::uint32_t>(count + padding));
+            std::vector<FlatChart> charts;
+            for (int i = 0; i < count; ++i)
+                charts.push_back(random_chart(dice, 0.2 + unit(dice)));
+            PackingOptions options;
+            options.size = {701, 500};
+            options.padding = padding;
+            const Packing packing = packed(charts, options);
+            std::vector<std::vector<BorderSegment>> borders;
+            for (std::size_t i = 0; i < charts.size(); ++i)
+                borders.push_back(placed_border(charts[i], packing, i));
+            for (std::size_t i = 0; i < borders.size(); ++i) {
+                for (const auto& [a, b] : borders[i]) {
+                    EXPECT_GE(std::min(a.x, a.y), 0.5 * padding);
+                    EXPECT_LE(a.x, options.size.x - 0.5 * padding);
+                    EXPECT_LE(a.y, options.size.y - 0.5 * padding);
+                }
+                for (std::size_t j = 0; j < i; ++j) {
+                    EXPECT_GE(distance(borders[i], borders[j]), padding)
+                        << i << " and " << j << " of " << count << ", padding " << padding;
+                    EXPECT_FALSE(is_inside(borders[i][0].first, borders[j]));
+                    EXPECT_FALSE(is_inside(borders[j][0].first, borders[i]));
+                }
+            }
+        }
     }
 }
 

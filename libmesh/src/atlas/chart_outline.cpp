@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "atlas/chart_outline.h"
+
+#include <limits>
+
+namespace relief::detail {
+
+Outline outline_of(const FlatChart& chart, const glm::dvec2& direction) {
+    Outline outline;
+    outline.direction = direction;
+    outline.low = glm::dvec2(std::numeric_limits<double>::infinity());
+    glm::dvec2 high(-std::numeric_limits<double>::infinity());
+    for (Corner corner = 0; corner < chart.mesh.opposite.size(); ++corner) {
+        if (chart.mesh.opposite[corner] != no_corner) continue;
+        const glm::uvec3& v = chart.mesh.vertices[corner / 3];
+        const auto point = [&](Corner i) {
+            return rotated(chart.coordinates[v[static_cast<glm::length_t>(i % 3)]], direction);
+        };
+        const BorderSegment segment(point(corner), point(corner + 1));
+        // Borders are loops, so that each point is the first one of a segment.
+        outline.low = glm::min(outline.low, segment.first);
+        high = glm::max(high, segment.first);
+        outline.border.push_back(segment);
+    }
+    for (auto& [a, b] : outline.border) {
+        a -= outline.low;
+        b -= outline.low;
+    }
+    outline.size = high - outline.low;
+    return outline;
+}
+
+CellMask mask_of(const Outline& outline, double scale, double margin, int cell) {
+    std::vector<BorderSegment> border;
+    border.reserve(outline.border.size());
+    for (const auto& [a, b] : outline.border)
+        border.emplace_back(a * scale, b * scale);
+    return mask_of(border, outline.size * scale, margin, cell);
+}
+
+}  // namespace relief::detail
