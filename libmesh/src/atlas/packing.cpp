@@ -63,10 +63,12 @@ int cell_of(const PackingOptions& options) {
 }
 
 /// The number of packs in all, unless none succeeds. Many charts differ little from their mean, so
-/// that the estimated scale is exact for them, and each pack takes long.
-std::size_t attempts_for(std::size_t chart_count) {
+/// that the estimated scale is exact for them, and each pack takes long. Few charts are separated
+/// afterwards, unless the scale is fixed.
+std::size_t attempts_for(std::size_t chart_count, bool is_fixed) {
     const std::size_t attempts = std::min(10 * chart_count, 4000 / (chart_count + 40));
-    return std::clamp<std::size_t>(attempts, 2, chart_count <= max_freely_rotated ? 20 : 80);
+    const bool are_separated = chart_count <= max_freely_rotated && !is_fixed;
+    return std::clamp<std::size_t>(attempts, 2, are_separated ? 20 : 80);
 }
 
 /// A chart in one rotation at one scale.
@@ -388,7 +390,7 @@ Packing packed(std::span<const FlatChart> charts, const PackingOptions& options)
     if (!(largest > 0.0)) throw InvalidInput("the padding leaves no room in the map");
     if (options.texels_per_unit && *options.texels_per_unit > largest)
         throw InvalidInput("the charts do not fit into the map at the requested density");
-    const std::size_t attempts = attempts_for(charts.size());
+    const std::size_t attempts = attempts_for(charts.size(), options.texels_per_unit.has_value());
     ProgressStage stage("packing charts", attempts);
     Packer packer(charts, options);
     RuleSearch search(charts);
