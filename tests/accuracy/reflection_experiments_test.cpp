@@ -11,6 +11,7 @@
 #include "relief/mesh/image.h"
 #include "relief/shade/image_compare.h"
 #include "rendered_methods.h"
+#include "support/labels.h"
 
 namespace relief {
 using namespace relief::accuracy;

@@ -181,7 +181,7 @@ auto during(const char* name, const Work& work) {
 
 /// Divides a surface into charts, and packs them.
 Atlas new_atlas(const AtlasSurface& surface, const UnwrapOptions& options, Layout layout) {
-    const Segmentation segmentation = during("dividing into charts", [&] {
+    Segmentation segmentation = during("dividing into charts", [&] {
         Segmentation merged = divided(surface, ChartLimits{});
         straighten_borders(surface, merged);
         return merged;
