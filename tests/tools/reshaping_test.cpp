@@ -108,12 +108,13 @@ TEST(DecimateCommand, MeetsANumberARatioAndReports) {
     const json report = json::parse(workplace.read("out/a.json"));
     EXPECT_EQ(report["tool"], "relief-mesh decimate");
     EXPECT_EQ(report["options"], json({{"triangles", 1000},
+                                       {"for", "picture"},
                                        {"keep_borders", false},
                                        {"keep_seams", false},
                                        {"keep_positions", false},
                                        {"weights",
                                         {{"texcoords", 1.0},
-                                         {"normals", 0.0},
+                                         {"normals", 0.005},
                                          {"colors", 0.01},
                                          {"joints", 0.01},
                                          {"targets", 1.0}}},

@@ -180,7 +180,7 @@ void add_distance(Summary& summary, const SurfaceDistance& distance, double corn
     };
     summary.add("distance",
                 {fmt::format("of IN from OUT: {}", length(distance.from_a)),
-                 fmt::format("of OUT from IN: {} (unit of the model)", length(distance.from_b))},
+                 fmt::format("of OUT from IN: {} (unit of the scene)", length(distance.from_b))},
                 {{"distance",
                   {{"of_input", distance_json(distance.from_a)},
                    {"of_output", distance_json(distance.from_b)}}}});

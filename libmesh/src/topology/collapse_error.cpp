@@ -111,13 +111,13 @@ void CollapseError::merge(std::uint32_t vertex, const Move& move) {
 /// between such vertices still lie below the surface by about half as much (measured on tori), so
 /// the vertex moves on by that. There, a quarter of the quadric remains at the minimum; at a
 /// corner, which the minimum restores exactly, nothing does. If the planes are nearly parallel, the
-/// minimum may be far away: an offset of more than four times the error, its root mean square over
+/// minimum may be far away: an offset of more than 16 times the error, its root mean square over
 /// the area, is refused.
 glm::dvec3 CollapseError::fitted_offset(std::uint32_t vertex, const Ring& ring) const {
     constexpr double damping = 1e-3;
     constexpr double beyond = 0.55;
     constexpr double remainder_of_curvature = 0.25;
-    constexpr double most = 4.0;
+    constexpr double most = 16.0;
     const Quadric& q = quadrics_[vertex];
     const glm::dvec3 p = input_.point(vertex);
     double before = q(p);

@@ -294,6 +294,13 @@ void set_attributes(CollapseInput& input, const AttributedMesh& surface,
     add(with_normals, 3, weights.normal * weights.normal);
     add(with_colors, 4, weights.color * weights.color);
     add(with_joints, 4, weights.joint * weights.joint);
+    constexpr double largest_difference = 2.0;  // Of opposite normals, and of colors.
+    for (const auto& [is_used, weight] : {std::pair{with_normals, weights.normal},
+                                          {with_colors, weights.color},
+                                          {with_joints, weights.joint}}) {
+        const double error = is_used ? largest_difference * weight : 0.0;
+        input.attribute_allowance += error * error;
+    }
     std::vector<std::span<const glm::vec3>> displacements;
     for (const std::vector<glm::vec3>& values : deformation.displacements) {
         if (weights.target > 0.0 && !values.empty()) displacements.emplace_back(values);
@@ -479,6 +486,8 @@ JoinedSurfaces::JoinedSurfaces(std::span<PreparedMesh> meshes, std::span<const d
                     static_cast<float>(values[k] * std::sqrt(input.attribute_weights[k]) * factor);
         }
         joined_.wedge_count += input.wedge_count;
+        joined_.attribute_allowance =
+            std::max(joined_.attribute_allowance, input.attribute_allowance * factor * factor);
         joined_.keeps_borders = input.keeps_borders;
         joined_.keeps_seams = input.keeps_seams;
         joined_.fits_positions = input.fits_positions;

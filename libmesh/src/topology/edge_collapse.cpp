@@ -40,8 +40,10 @@ constexpr double min_smooth_cosine = 0.5;
 /// connected part. Half of a square and a corner of a cube are farther away, which are their shape.
 constexpr double max_part_distance = 0.2;
 
-/// The weight of the squared length, which prefers short edges if costs are otherwise equal.
+/// The weight of the squared length, which prefers short edges if costs are otherwise equal. For
+/// pictures it is smaller, because long edges of flat parts compete with rough parts.
 constexpr double length_preference = 1e-7;
+constexpr double length_preference_in_pictures = 1e-13;
 
 /// The part of the possible collapses that a pass executes. Smaller fractions follow the order of
 /// cost more exactly and take more passes.
@@ -318,6 +320,8 @@ bool Collapser::is_valid(std::uint32_t vertex, const Ring& ring, const Move& mov
 float Collapser::best_move(std::uint32_t vertex, const Ring& ring, Move& best) const {
     if (!may_move(vertex, ring)) return no_collapse;
     const bool careful = (flags_[vertex] & is_careful) != 0;
+    const double preference =
+        input_.for_picture ? length_preference_in_pictures : length_preference;
     double least = std::numeric_limits<double>::infinity();
     Move move;
     for (std::size_t spoke = 0; spoke < ring.spokes; ++spoke) {
@@ -325,11 +329,13 @@ float Collapser::best_move(std::uint32_t vertex, const Ring& ring, Move& best) c
         const double error = error_->cost(vertex, move);
         const glm::dvec3 along = input_.point(move.target) - input_.point(vertex);
         const double squared_length = glm::dot(along, along);
-        const double here = error_->priority(
-            error + length_preference * squared_length * squared_length, vertex, move);
+        const double here =
+            error_->priority(error + preference * squared_length * squared_length, vertex, move);
         if (here > least || (here == least && move.target > best.target)) continue;
         if (careful && !is_valid(vertex, ring, move)) continue;
-        if (!error_->is_within_limit(error, vertex, move)) continue;
+        if (!error_->is_within_limit(error, vertex, move) ||
+            !error_->keeps_part(error, vertex, move))
+            continue;
         least = here;
         best = move;
     }
@@ -592,7 +598,9 @@ Obstacles Collapser::obstacles() const {
             if (!surface_.find_move(ring, spoke, move)) continue;
             breaks_part = breaks_part || !keeps_part(v, ring, move);
             if (!is_valid(v, ring, move)) continue;
-            is_beyond_limit = !error_->is_within_limit(error_->cost(v, move), v, move);
+            const double error = error_->cost(v, move);
+            is_beyond_limit = is_beyond_limit || !error_->is_within_limit(error, v, move);
+            breaks_part = breaks_part || !error_->keeps_part(error, v, move);
         }
         ++(is_beyond_limit ? found.limits : breaks_part ? found.parts : found.folds);
     }

@@ -59,6 +59,9 @@ struct CollapseInput {
     /// By vertex: the diagonal of the bounding box of its connected part, in the unit of the
     /// points.
     std::vector<float> part_sizes;
+    /// The largest squared error, per area, of attributes that are no lengths. It does not count
+    /// against the shape of a part.
+    double attribute_allowance = 0.0;
     bool for_picture = false;              ///< See CollapseError::priority().
     std::optional<std::size_t> triangles;  ///< The number of triangles to stop at.
     /// The maximum error of a collapse: the root of its cost divided by the area, in the unit of

@@ -181,6 +181,10 @@ struct Quadric {
     }
 };
 
+/// The maximum root mean square error of a collapse, relative to the size of its connected part: a
+/// sphere keeps about 16 triangles.
+constexpr double max_part_error = 0.05;
+
 /// The squared distance, in the unit of the points, that counts as 0.
 constexpr double collapse_rounding = 1e-15;
 
@@ -231,9 +235,15 @@ class CollapseError {
 
     /// Returns whether a cost is within the maximum error.
     [[nodiscard]] bool is_within_limit(double cost, std::uint32_t vertex, const Move& move) const {
-        if (!input_.max_error) return true;
-        const double area = areas_[vertex] + areas_[move.target];
-        return !(cost > (*input_.max_error * *input_.max_error + collapse_rounding) * area);
+        return !input_.max_error ||
+               is_within(*input_.max_error * *input_.max_error, cost, vertex, move);
+    }
+
+    /// Returns whether the error is small for the connected part of a vertex.
+    [[nodiscard]] bool keeps_part(double cost, std::uint32_t vertex, const Move& move) const {
+        if (input_.part_sizes.empty()) return true;
+        const double most = max_part_error * input_.part_sizes[vertex];
+        return is_within(most * most + input_.attribute_allowance, cost, vertex, move);
     }
 
     /// Adds the errors of a vertex that moves to those of its target.
@@ -248,6 +258,11 @@ class CollapseError {
         return std::span(attribute_sums_).subspan(wedge * sums_per_wedge_, sums_per_wedge_);
     }
     void add_attributes(std::size_t triangle, const glm::dvec3& normal, double doubled_area);
+    [[nodiscard]] bool is_within(double squared_error, double cost, std::uint32_t vertex,
+                                 const Move& move) const {
+        const double area = areas_[vertex] + areas_[move.target];
+        return !(cost > (squared_error + collapse_rounding) * area);
+    }
     const CollapseInput& input_;
     const CollapseSurface& surface_;
     // By vertex:

@@ -170,6 +170,21 @@ TEST(DecimateParts, ACubeKeepsItsCorners) {
     EXPECT_EQ(result.mesh.triangles.size(), 36U);
 }
 
+TEST(DecimateParts, RoundPartsStayRound) {
+    const Mesh sphere = bare(make_sphere());
+    for (const DecimateGoal goal : {DecimateGoal::picture, DecimateGoal::distance}) {
+        DecimateOptions options = to_triangles(4);
+        options.goal = goal;
+        options.fit_positions = true;
+        Report report;
+        const FramedMesh result = decimated(sphere, options, report);
+        EXPECT_GE(result.mesh.triangles.size(), 12U);
+        EXPECT_LT(result.mesh.triangles.size(), 64U);
+        EXPECT_EQ(report.count("number of triangles out of reach"), 1U);
+        EXPECT_LT(surface_distance(sphere, result.mesh).from_a.rms, 0.25);
+    }
+}
+
 TEST(DecimateParts, SmallPartsVanishOnRequestOnly) {
     Mesh all = bare(copies(make_quad(), 5, 0.0F));
     // Quads of sides 2, 1, 1/2, 1/4 and 1/8.
@@ -189,11 +204,12 @@ TEST(DecimateParts, SmallPartsVanishOnRequestOnly) {
 
 TEST(DecimateScene, WrongArgumentsAreRefused) {
     const Mesh quad = make_quad();
-    EXPECT_EQ(test::message_of([&] { decimated_scene({quad}, {0.0}, to_triangles(2)); }),
-              "the scale of a mesh is 0, but must be finite and above 0");
+    EXPECT_EQ(
+        test::message_of<InvalidInput>([&] { decimated_scene({quad}, {0.0}, to_triangles(2)); }),
+        "the scale of a mesh is 0, but must be finite and above 0");
     DecimateOptions options = to_triangles(2);
     options.drop_parts = -1.0;
-    EXPECT_EQ(test::message_of([&] { decimated(quad, options); }),
+    EXPECT_EQ(test::message_of<InvalidInput>([&] { decimated(quad, options); }),
               "the size of parts to drop is -1, but must be at least 0");
 }
 
