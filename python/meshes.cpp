@@ -371,7 +371,8 @@ AttributeWeights weights_of(const std::map<std::string, double>& weights) {
 py::tuple py_decimated(const MeshObject& mesh, std::optional<std::size_t> triangles,
                        std::optional<double> max_error,
                        const std::optional<double>& max_normal_degrees, bool keep_borders,
-                       bool keep_seams, bool keep_positions,
+                       bool keep_seams, bool keep_positions, double drop_parts,
+                       const std::optional<std::string>& goal,
                        const std::map<std::string, double>& weights, const std::string& normals,
                        const FindingList& report) {
     DecimateOptions options;
@@ -381,11 +382,13 @@ py::tuple py_decimated(const MeshObject& mesh, std::optional<std::size_t> triang
     options.keep_borders = keep_borders;
     options.keep_seams = keep_seams;
     options.fit_positions = !keep_positions;
+    options.drop_parts = drop_parts;
     options.weights = weights_of(weights);
-    if (max_error) {
-        options.goal = DecimateGoal::distance;
-        if (!weights.contains("normals")) options.weights.normal = 0.0;
-    }
+    options.goal = goal        ? value_of<DecimateGoal>(*goal, "goal")
+                   : max_error ? DecimateGoal::distance
+                               : DecimateGoal::picture;
+    if (options.goal == DecimateGoal::distance && !weights.contains("normals"))
+        options.weights.normal = 0.0;
     options.frames.normals = value_of<NormalMode>(normals, "normals");
     Report findings;
     FramedMesh framed = without_gil([&] { return decimated(mesh, options, findings); });
@@ -719,13 +722,16 @@ void add_mesh_functions(py::module_& module) {
         "decimate", &py_decimated, arg("mesh"), py::kw_only(), arg("triangles") = py::none(),
         arg("max_error") = py::none(), arg("max_normal_degrees") = py::none(),
         arg("keep_borders") = false, arg("keep_seams") = false, arg("keep_positions") = false,
+        arg("drop_parts") = 0.0, arg("goal") = py::none(),
         arg("weights") = std::map<std::string, double>(), arg("normals") = "keep",
         arg("report") = py::none(),
         "Remove vertices by edge collapses until a number of triangles or an error.\n\n"
         "`max_error` is the maximum distance between the surfaces, and `max_normal_degrees` the\n"
         "angle between a changed triangle and the surface. `keep_borders` and `keep_seams`\n"
         "leave boundaries and seams unchanged. Without `keep_positions`, the vertices that\n"
-        "remain move to where the result fits the mesh best. `weights` has any of \"texcoords\",\n"
+        "remain move to where the result fits the mesh best. Connected parts that are smaller\n"
+        "than `drop_parts` are removed. `goal` is \"picture\" or \"distance\", the default with\n"
+        "`max_error`, as for `relief-mesh decimate --for`. `weights` has any of \"texcoords\",\n"
         "\"normals\" and \"colors\", as for `relief-mesh decimate --weights`. The result is\n"
         "(mesh, source_vertex), with source_vertex as for with_frames().\n\n"
         "Raises InvalidInput for options that are missing or out of range.");

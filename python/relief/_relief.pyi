@@ -173,6 +173,8 @@ def decimate(
     keep_borders: bool = False,
     keep_seams: bool = False,
     keep_positions: bool = False,
+    drop_parts: float = 0.0,
+    goal: Literal["picture", "distance"] | None = None,
     weights: Mapping[Literal["texcoords", "normals", "colors"], float] = {},
     normals: NormalMode = "keep",
     report: Report | None = None,

@@ -205,18 +205,24 @@ TEST(DecimateCommand, TheDistanceAndTheAngleAreMeasuredInBothDirections) {
         EXPECT_LT(report["distance"][direction]["max_degrees"], 1e-3) << direction;
     }
     EXPECT_TRUE(report["milliseconds"].contains("measure"));
-    // Two triangles leave one side. The distance of the other one grows from 0 at the ridge to its
-    // width, which is sqrt(1.25), and its normal differs by 53.13 degrees.
-    const std::string to_two = "relief-mesh decimate roof.obj --triangles 2 --keep-positions ";
+    // A square of side 2, and above it one of area 1.25, at heights z from 0.5 to 1.25, whose
+    // normal differs by 36.87 degrees. Without the second one, the distance of its points is z.
+    workplace.write("two.obj",
+                    "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nf 1 2 3\nf 1 3 4\n"
+                    "v 0 0 0.5\nv 1 0 0.5\nv 1 1 1.25\nv 0 1 1.25\nf 5 6 7\nf 5 7 8\n");
+    const std::string to_two = "relief-mesh decimate two.obj --triangles 4 --drop-parts 2 ";
     ProgramResult result = workplace.run(to_two + "out/b.ply --report out/b.json");
     ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("2 x triangle of a small part"));
     report = json::parse(workplace.read("out/b.json"));
     ASSERT_EQ(report["triangles_written"], 2);
+    EXPECT_EQ(report["options"]["drop_parts"], 2.0);
     const json of_input = report["distance"]["of_input"];
-    EXPECT_NEAR(of_input["max"], std::sqrt(1.25), 1e-3);
-    EXPECT_NEAR(of_input["mean"], std::sqrt(1.25) / 4.0, 3e-3);
-    EXPECT_NEAR(of_input["rms"], std::sqrt(1.25 / 6.0), 5e-3);
-    EXPECT_NEAR(of_input["mean_degrees"], 53.13 / 2.0, 0.2);
+    constexpr double area_share = 1.25 / 5.25;
+    EXPECT_NEAR(of_input["max"], 1.25, 1e-6);
+    EXPECT_NEAR(of_input["mean"], 0.875 * area_share, 3e-3);
+    EXPECT_NEAR(of_input["rms"], std::sqrt(0.8125 * area_share), 5e-3);
+    EXPECT_NEAR(of_input["mean_degrees"], 36.87 * area_share, 0.2);
     EXPECT_LT(report["distance"]["of_output"]["max"], 1e-6);
     EXPECT_THAT(result.out, HasSubstr("distance  of IN from OUT: mean "));
     EXPECT_THAT(result.out, HasSubstr("          of OUT from IN: mean "));

@@ -380,6 +380,19 @@ TEST(UnwrapScene, WritesTheRequestedSet) {
                       "--uv-set 1: data/vase.obj has only texture coordinate set 0"}});
 }
 
+TEST(UnwrapScene, ReportsOnlyObjMaterialsThatHaveMaps) {
+    const Workplace workplace;
+    workplace.write("a.obj",
+                    "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+                    "usemtl plain\nf 1/1 2/2 3/3\n");
+    for (const bool has_map : {false, true}) {
+        workplace.write("a.mtl", std::string("newmtl plain\nKd 0.5 0.5 0.5\n") +
+                                     (has_map ? "map_Kd a.png\n" : ""));
+        const ProgramResult result = workplace.run("relief-mesh unwrap a.obj out/b.obj --strict");
+        EXPECT_EQ(result.exit_code, has_map ? 3 : 0) << result.out << result.error;
+    }
+}
+
 TEST(UnwrapScene, ReportsOrRemovesTexturesAtReplacedCoordinates) {
     const Workplace workplace;
     SceneFile scene = textured_square({{"index", 0}});

@@ -182,8 +182,8 @@ struct Quadric {
 };
 
 /// The maximum root mean square error of a collapse, relative to the size of its connected part: a
-/// sphere keeps about 16 triangles.
-constexpr double max_part_error = 0.05;
+/// sphere keeps about 30 triangles.
+constexpr double max_part_error = 0.03;
 
 /// The squared distance, in the unit of the points, that counts as 0.
 constexpr double collapse_rounding = 1e-15;

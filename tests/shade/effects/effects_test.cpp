@@ -454,6 +454,9 @@ TEST(DebugViews, KeepMasksAndIgnoreBlending) {
     f.view = DebugView::geometric_normal;
     EXPECT_EQ(planned_interface(canonical(f)).samplers,
               (std::vector<std::string>{"diffuse_texture"}));
+    f.opacity_texture = true;
+    EXPECT_EQ(planned_interface(canonical(f)).samplers,
+              (std::vector<std::string>{"diffuse_texture", "opacity_texture"}));
     f.alpha = AlphaMode::blend;
     EXPECT_TRUE(planned_interface(canonical(f)).samplers.empty());
     EXPECT_EQ(canonical(f).alpha, AlphaMode::opaque);
