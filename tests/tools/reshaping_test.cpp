@@ -118,6 +118,7 @@ TEST(DecimateCommand, MeetsANumberARatioAndReports) {
                                          {"colors", 0.01},
                                          {"joints", 0.01},
                                          {"targets", 1.0}}},
+                                       {"measure", "quick"},
                                        {"normals", "keep"}}));
     EXPECT_EQ(report["triangles_read"], 5760);
     EXPECT_EQ(report["triangles_written"], 1000);
@@ -194,10 +195,11 @@ TEST(DecimateCommand, TheDistanceAndTheAngleAreMeasuredInBothDirections) {
     const Workplace workplace;
     write_roof(workplace, "roof.obj", 10);
     // Four triangles describe the roof exactly.
-    ASSERT_EQ(
-        workplace.run("relief-mesh decimate roof.obj out/a.ply --triangles 4 --report out/a.json")
-            .exit_code,
-        0);
+    ASSERT_EQ(workplace
+                  .run("relief-mesh decimate roof.obj out/a.ply --triangles 4 --measure full "
+                       "--report out/a.json")
+                  .exit_code,
+              0);
     json report = json::parse(workplace.read("out/a.json"));
     EXPECT_EQ(report["triangles_written"], 4);
     for (const char* direction : {"of_input", "of_output"}) {
@@ -211,7 +213,7 @@ TEST(DecimateCommand, TheDistanceAndTheAngleAreMeasuredInBothDirections) {
                     "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nf 1 2 3\nf 1 3 4\n"
                     "v 0 0 0.5\nv 1 0 0.5\nv 1 1 1.25\nv 0 1 1.25\nf 5 6 7\nf 5 7 8\n");
     const std::string to_two = "relief-mesh decimate two.obj --triangles 4 --drop-parts 2 ";
-    ProgramResult result = workplace.run(to_two + "out/b.ply --report out/b.json");
+    ProgramResult result = workplace.run(to_two + "out/b.ply --measure full --report out/b.json");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("2 x triangle of a small part"));
     report = json::parse(workplace.read("out/b.json"));
@@ -231,6 +233,47 @@ TEST(DecimateCommand, TheDistanceAndTheAngleAreMeasuredInBothDirections) {
     result = workplace.run(to_two + "out/c.ply --quiet");
     EXPECT_EQ(result.out, "");
     EXPECT_EQ(workplace.read("out/b.ply"), workplace.read("out/c.ply"));
+}
+
+TEST(DecimateCommand, QuickMeasurementsStateTheirConfidence) {
+    const Workplace workplace;
+    const std::string line = "relief-mesh decimate data/vase.obj out/low.glb --ratio 0.3 ";
+    const auto run = [&](const std::string& options) {
+        const ProgramResult result = workplace.run(line + "--report out/low.json " + options);
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        return std::pair(result.out, json::parse(workplace.read("out/low.json")));
+    };
+    const auto [text, quick] = run("");
+    const std::string bytes = workplace.read("out/low.glb");
+    EXPECT_EQ(quick["options"]["measure"], "quick");
+    EXPECT_EQ(quick["distance"]["confidence"], 0.95);
+    EXPECT_THAT(text, HasSubstr("max is that of 1000 random samples on each: with 95 % confidence, "
+                                "at most 0.3 % of its area is farther\n"));
+    const auto [full_text, full] = run("--measure full");
+    EXPECT_EQ(full["options"]["measure"], "full");
+    EXPECT_FALSE(full["distance"].contains("confidence"));
+    EXPECT_EQ(full_text.find("confidence"), std::string::npos);
+    for (const char* direction : {"of_input", "of_output"}) {
+        const json& some = quick["distance"][direction];
+        const json& all = full["distance"][direction];
+        EXPECT_EQ(some["samples"], 1000) << direction;
+        // 1 - 0.05^(1 / 1000)
+        EXPECT_NEAR(some["max_farther_part"], 0.0029912, 1e-6) << direction;
+        EXPECT_EQ(all["samples"], 20'000) << direction;
+        EXPECT_NEAR(some["mean"], all["mean"], 0.1 * double(all["mean"])) << direction;
+        EXPECT_LE(some["max"], all["max"]) << direction;
+        EXPECT_GT(some["max"], 0.3 * double(all["max"])) << direction;
+    }
+    EXPECT_EQ(quick["max_corner_degrees"], full["max_corner_degrees"]);
+    const auto [none_text, none] = run("--measure none");
+    EXPECT_EQ(none["options"]["measure"], "none");
+    EXPECT_FALSE(none.contains("distance"));
+    EXPECT_FALSE(none["milliseconds"].contains("measure"));
+    EXPECT_EQ(none_text.find("distance"), std::string::npos);
+    EXPECT_EQ(workplace.read("out/low.glb"), bytes);
+    // The same numbers for any number of threads.
+    EXPECT_EQ(run("--threads 1").second["distance"], quick["distance"]);
+    EXPECT_EQ(workplace.run(line + "--quiet --measure none").exit_code, 0);
 }
 
 TEST(DecimateCommand, TheMeasuredDistanceIsWithinMaxError) {
@@ -441,6 +484,13 @@ TEST(ReshapingRefusal, StatesTheReasonAndWritesNoFile) {
           "--max-error -1: not at least 0"},
          {"relief-mesh decimate square.obj out/old.glb --ratio 0.5 --max-normal-error 0", 2,
           "--max-normal-error 0: not between 0.001 and 180 degrees"},
+         {"relief-mesh decimate square.obj out/old.glb --ratio 0.5 --measure half", 2,
+          "--measure half: "},
+         {"relief-mesh decimate square.obj out/old.glb --ratio 0.5 --quiet --measure full", 2,
+          "--measure full: has no effect with --quiet without --report (leave it out, or add "
+          "--report)"},
+         {"relief-mesh decimate square.obj -o out/many/ --ratio 0.5 --measure quick", 2,
+          "--measure quick: has no effect on several models without --report"},
          {"relief-mesh decimate square.obj out/old.glb --max-normal-error 20", 2,
           "no limit is given (give --triangles N, --ratio R or --max-error E)"},
          {"relief-mesh decimate square.obj out/old.glb --ratio 0.5 --weights normals", 2,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -41,6 +42,24 @@ void add_distances(DistanceStats& all, const DistanceStats& one) {
     all.omitted += one.omitted;
 }
 
+/// Returns the number of samples on all meshes that those of the meshes are at least, each for its
+/// part of the area.
+std::size_t joined_samples(const std::vector<SurfaceDistance>& distances,
+                           DistanceStats SurfaceDistance::*side) {
+    double area = 0.0;
+    for (const SurfaceDistance& one : distances)
+        area += (one.*side).area;
+    double samples = std::numeric_limits<double>::infinity();
+    for (const SurfaceDistance& one : distances) {
+        const DistanceStats& stats = one.*side;
+        if (stats.area > 0.0)
+            samples = std::min(samples, static_cast<double>(stats.samples) * area / stats.area);
+    }
+    // Numbers that were rounded up for areas must not be below the whole number again.
+    constexpr double rounding = 1e-9;
+    return std::isfinite(samples) ? static_cast<std::size_t>(samples * (1.0 + rounding)) : 0;
+}
+
 /// Converts distances of a mesh to those in the scene.
 SurfaceDistance scaled(SurfaceDistance distance, double scale) {
     for (DistanceStats* stats : {&distance.from_a, &distance.from_b}) {
@@ -67,6 +86,8 @@ SurfaceDistance joined_distance(const std::vector<SurfaceDistance>& distances) {
         add_distances(all.from_a, one.from_a);
         add_distances(all.from_b, one.from_b);
     }
+    all.from_a.samples = joined_samples(distances, &SurfaceDistance::from_a);
+    all.from_b.samples = joined_samples(distances, &SurfaceDistance::from_b);
     for (DistanceStats* stats : {&all.from_a, &all.from_b}) {
         if (!(stats->area > 0.0)) continue;
         stats->mean /= stats->area;
@@ -82,21 +103,31 @@ Json distance_json(const DistanceStats& stats) {
             {"max", stats.max},
             {"mean_degrees", stats.mean_degrees},
             {"max_degrees", stats.max_degrees},
+            {"samples", stats.samples},
             {"omitted", stats.omitted}};
 }
 
 namespace {
 
+/// How the distance between IN and OUT is measured: not at all, at random samples, or at all
+/// vertices and inside the triangles.
+enum class Measuring { none, quick, full };
+
+const Choices<Measuring> measuring_words = {
+    {"quick", Measuring::quick}, {"full", Measuring::full}, {"none", Measuring::none}};
+
 struct ReshapeRequest {
     FileWords words;
     std::optional<ModelFormat> format;  ///< Of files in an output folder.
     NormalMode normals = NormalMode::keep;
+    std::optional<Measuring> measuring;  ///< --measure
     ReportOptions report;
     GeneralOptions general;
 };
 
 struct Reshaped {
     ChangedModel changed;
+    Measuring measuring = Measuring::none;
     std::optional<SurfaceDistance> distance;
     double corner_angle = 0.0;         ///< What --max-normal-error limits, in degrees.
     std::vector<std::string> omitted;  ///< Content that the output format cannot store.
@@ -105,6 +136,18 @@ struct Reshaped {
     bool is_small = false;
 };
 
+/// Returns the area of the triangles with finite corners.
+double area_of(const Mesh& mesh) {
+    double area = 0.0;
+    for (const glm::uvec3& t : mesh.triangles) {
+        const glm::dvec3 a(mesh.positions[t.x]);
+        const double twice = glm::length(
+            glm::cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a));
+        if (std::isfinite(twice)) area += twice / 2.0;
+    }
+    return area;
+}
+
 /// A mesh without attributes, before and after a change.
 struct SurfacePair {
     Mesh before;
@@ -112,15 +155,51 @@ struct SurfacePair {
     double scale = 1.0;  ///< The length of its unit in the scene.
 };
 
-/// Selects whether the distance between IN and OUT is measured.
-enum class Measuring { off, on };
+/// The confidence that is stated for random samples.
+constexpr double confidence = 0.95;
+
+/// Measures the distances at random samples. Their number depends on the number of triangles of
+/// the input alone, so that measuring takes less time than the decimation.
+std::vector<SurfaceDistance> quick_distances(std::span<const SurfacePair> pairs) {
+    std::size_t triangles = 0;
+    double area_before = 0.0;
+    double area_after = 0.0;
+    for (const SurfacePair& pair : pairs) {
+        triangles += pair.before.triangles.size();
+        area_before += pair.scale * pair.scale * area_of(pair.before);
+        area_after += pair.scale * pair.scale * area_of(pair.after.mesh);
+    }
+    const std::size_t samples = std::clamp<std::size_t>(triangles / 16, 1'000, 20'000);
+    std::vector<SurfaceDistance> distances;
+    for (const SurfacePair& pair : pairs) {
+        const auto share = [&](const Mesh& mesh, double area_of_all) {
+            const double area = pair.scale * pair.scale * area_of(mesh);
+            return area > 0.0 ? static_cast<std::size_t>(
+                                    std::ceil(static_cast<double>(samples) * area / area_of_all))
+                              : std::size_t{0};
+        };
+        distances.push_back(
+            scaled(sampled_distance(pair.before, pair.after.mesh, share(pair.before, area_before),
+                                    share(pair.after.mesh, area_after),
+                                    static_cast<std::uint32_t>(distances.size())),
+                   pair.scale));
+    }
+    return distances;
+}
+
+std::vector<SurfaceDistance> full_distances(std::span<const SurfacePair> pairs) {
+    std::vector<SurfaceDistance> distances;
+    for (const SurfacePair& pair : pairs)
+        distances.push_back(scaled(surface_distance(pair.before, pair.after.mesh), pair.scale));
+    return distances;
+}
 
 /// The operation of a command on each model.
 struct Reshaping {
     std::string verb;  ///< "decimate", the name of the stage.
     NormalMode normals = NormalMode::keep;
     ModelChange change;
-    Measuring measuring = Measuring::off;
+    Measuring measuring = Measuring::none;
     std::optional<std::size_t> max_triangles{};  ///< --triangles
 };
 
@@ -130,11 +209,12 @@ Reshaped run(const Job& job, const Reshaping& reshaping, Stages& stages) {
     Report read_report;
     Model model = stages.run("read", [&] { return read_model(job.input, read_report); });
     done.findings.add("", read_report);
+    done.measuring = reshaping.measuring;
     std::vector<SurfacePair> pairs;
     const ModelChange kept_change = [&](std::span<const TriangleInput> meshes,
                                         std::span<Report> reports, Report& whole) {
         std::vector<FramedMesh> changed = reshaping.change(meshes, reports, whole);
-        for (std::size_t i = 0; i < meshes.size() && reshaping.measuring == Measuring::on; ++i)
+        for (std::size_t i = 0; i < meshes.size() && reshaping.measuring != Measuring::none; ++i)
             pairs.push_back({without_attributes(meshes[i].mesh),
                              {without_attributes(changed[i].mesh), changed[i].source_vertex},
                              meshes[i].scale});
@@ -148,16 +228,14 @@ Reshaped run(const Job& job, const Reshaping& reshaping, Stages& stages) {
         done.findings.add(part.part, part.report);
     done.is_small =
         reshaping.max_triangles && done.changed.triangles_read <= *reshaping.max_triangles;
-    if (reshaping.measuring == Measuring::on)
+    if (reshaping.measuring != Measuring::none)
         done.distance = stages.run("measure", [&] {
-            std::vector<SurfaceDistance> distances;
             for (const SurfacePair& pair : pairs) {
-                distances.push_back(
-                    scaled(surface_distance(pair.before, pair.after.mesh), pair.scale));
                 const double angle = max_corner_angle(pair.before, pair.after);
                 done.corner_angle = std::max(done.corner_angle, angle * 180.0 / std::numbers::pi);
             }
-            return joined_distance(distances);
+            return joined_distance(reshaping.measuring == Measuring::quick ? quick_distances(pairs)
+                                                                           : full_distances(pairs));
         });
     Report write_report;
     stages.run("write", [&] {
@@ -168,7 +246,26 @@ Reshaped run(const Job& job, const Reshaping& reshaping, Stages& stages) {
     return done;
 }
 
-void add_distance(Summary& summary, const SurfaceDistance& distance, double corner_angle) {
+/// Returns a percentage with two digits, rounded up: "0.051 %".
+std::string percent_text(double part) {
+    const double percent = 100.0 * part;
+    double unit = 10.0;
+    while (10.0 * unit > percent)
+        unit /= 10.0;
+    return fmt::format("{:.3g} %", unit * std::ceil(percent / unit));
+}
+
+/// States how much of the area may be farther than the maximum of random samples.
+std::string confidence_text(const SurfaceDistance& distance) {
+    const std::size_t samples = std::min(distance.from_a.samples, distance.from_b.samples);
+    return fmt::format(
+        "max is that of {} random samples on each: with {:.0f} % confidence, at most {} of its "
+        "area is farther",
+        samples, 100.0 * confidence, percent_text(max_farther_part(samples, confidence)));
+}
+
+void add_distance(Summary& summary, const Reshaped& done) {
+    const SurfaceDistance& distance = *done.distance;
     const auto length = [](const DistanceStats& stats) {
         const std::string omitted =
             stats.omitted == 0 ? ""
@@ -178,19 +275,27 @@ void add_distance(Summary& summary, const SurfaceDistance& distance, double corn
     const auto angle = [](const DistanceStats& stats) {
         return fmt::format("mean {:.3g}, max {:.3g}", stats.mean_degrees, stats.max_degrees);
     };
-    summary.add("distance",
-                {fmt::format("of IN from OUT: {}", length(distance.from_a)),
-                 fmt::format("of OUT from IN: {} (unit of the scene)", length(distance.from_b))},
-                {{"distance",
-                  {{"of_input", distance_json(distance.from_a)},
-                   {"of_output", distance_json(distance.from_b)}}}});
+    std::vector<std::string> lines = {
+        fmt::format("of IN from OUT: {}", length(distance.from_a)),
+        fmt::format("of OUT from IN: {} (unit of the scene)", length(distance.from_b))};
+    Json json = {{"of_input", distance_json(distance.from_a)},
+                 {"of_output", distance_json(distance.from_b)}};
+    if (done.measuring == Measuring::quick) {
+        lines.push_back(confidence_text(distance));
+        json["confidence"] = confidence;
+        json["of_input"]["max_farther_part"] =
+            max_farther_part(distance.from_a.samples, confidence);
+        json["of_output"]["max_farther_part"] =
+            max_farther_part(distance.from_b.samples, confidence);
+    }
+    summary.add("distance", lines, {{"distance", std::move(json)}});
     summary.add(
         "angle",
         {fmt::format("between normals of IN and OUT: {}; of OUT and IN: {} degrees",
                      angle(distance.from_a), angle(distance.from_b)),
          fmt::format("at corners of OUT, as --max-normal-error limits it: max {:.3g} degrees",
-                     corner_angle)},
-        {{"max_corner_degrees", corner_angle}});
+                     done.corner_angle)},
+        {{"max_corner_degrees", done.corner_angle}});
 }
 
 Summary summary_of(const Job& job, const Reshaped& done, const Stages& stages) {
@@ -208,7 +313,7 @@ Summary summary_of(const Job& job, const Reshaped& done, const Stages& stages) {
                             done.is_small ? " (the input is within --triangles)" : ""),
                 {{"triangles_written", changed.triangles_written},
                  {"vertices_written", changed.vertices_written}});
-    if (done.distance) add_distance(summary, *done.distance, done.corner_angle);
+    if (done.distance) add_distance(summary, done);
     summary.add_findings(done.findings);
     add_omitted(summary, done.omitted, job.output);
     summary.add_times(stages);
@@ -264,7 +369,7 @@ ExitCode reshape_one(const CLI::App& app, const ReshapeRequest& request, const J
 /// Changes several models, and prints a line for each. Distances are measured for the report only.
 ExitCode reshape_all(const CLI::App& app, const ReshapeRequest& request, const JobList& list,
                      Reshaping reshaping, Json head) {
-    if (!request.report.file) reshaping.measuring = Measuring::off;
+    if (!request.report.file) reshaping.measuring = Measuring::none;
     Batch batch;
     batch.jobs = list.jobs;
     batch.one_by_one = may_share_companions(list.jobs);
@@ -278,6 +383,16 @@ ExitCode reshape_all(const CLI::App& app, const ReshapeRequest& request, const J
     return run_batch(app, batch, request.report, request.general);
 }
 
+/// \throws UsageError if --measure is given, but nothing that is measured would be reported
+void check_measuring(const ReshapeRequest& request, bool is_single) {
+    const bool is_reported = request.report.file || (is_single && !request.general.quiet);
+    if (is_reported || request.measuring.value_or(Measuring::none) == Measuring::none) return;
+    throw UsageError(fmt::format("--measure {}: has no effect {} without --report",
+                                 name_of(*request.measuring, measuring_words),
+                                 is_single ? "with --quiet" : "on several models"),
+                     "leave it out, or add --report");
+}
+
 /// Runs a command: reads, changes and writes the models, and reports.
 ///
 /// \param options  the command's options for the report
@@ -286,6 +401,7 @@ ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const Model
                  Measuring measuring, const Json& options,
                  std::optional<std::size_t> max_triangles = std::nullopt) {
     const JobList list = model_jobs_of(request.words, request.format);
+    check_measuring(request, list.is_single());
     check_files(request, list);
     set_thread_limit(request.general.threads);
     const Reshaping reshaping{command_name(app), request.normals, change, measuring, max_triangles};
@@ -368,6 +484,13 @@ void check_limits(const DecimateCommand& command) {
     }
 }
 
+/// Returns how distances are measured: by default at random samples, and not at all if nothing is
+/// reported.
+Measuring measuring_of(const ReshapeRequest& request) {
+    if (request.general.quiet && !request.report.file) return Measuring::none;
+    return request.measuring.value_or(Measuring::quick);
+}
+
 Json options_json(const DecimateCommand& command) {
     const DecimateOptions& options = command.options;
     Json json = Json::object();
@@ -385,6 +508,7 @@ Json options_json(const DecimateCommand& command) {
         weights[std::string(entry.word)] = options.weights.*(entry.weight);
     json["weights"] = std::move(weights);
     json["normals"] = enum_name(command.request.normals);
+    json["measure"] = name_of(measuring_of(command.request), measuring_words);
     return json;
 }
 
@@ -417,8 +541,7 @@ ExitCode decimate(const CLI::App& app, const DecimateCommand& given) {
             options.max_normal_error = *command.max_normal_degrees * std::numbers::pi / 180.0;
         return decimated(scene, options, reports, whole);
     };
-    const bool reports = !command.request.general.quiet || command.request.report.file;
-    return reshape(app, command.request, change, reports ? Measuring::on : Measuring::off,
+    return reshape(app, command.request, change, measuring_of(command.request),
                    options_json(command), command.options.triangles);
 }
 
@@ -486,13 +609,21 @@ void add_decimate_options(CLI::App& app, DecimateCommand& command) {
             parse_weights(subject, text, command);
         })
         .group(preserved);
+    add_choice(
+        app, "--measure", command.request.measuring, measuring_words,
+        "The distances between IN and OUT: at random samples, with the part of the area that "
+        "may be farther, in less time than the decimation (quick); also at all vertices and "
+        "inside triangles, which takes several times as long (full); or none. Default: "
+        "quick.")
+        .group("Measuring");
     set_examples(
-        app, {"relief-mesh decimate data/vase.obj out/vase-1000.glb --triangles 1000",
-              "relief-mesh decimate data/vase.obj out/vase-tenth.obj --ratio 0.1 --normals angle",
-              "relief-mesh decimate data/vase.obj out/vase-near.glb --max-error 0.01",
-              "relief-mesh decimate data/*.obj -o out/small/ --format glb --ratio 0.5",
-              "relief-mesh decimate data/vase.obj out/vase-smooth.glb --ratio 0.2 "
-              "--max-normal-error 30 --weights normals=0.1 --keep-seams"});
+        app,
+        {"relief-mesh decimate data/vase.obj out/vase-1000.glb --triangles 1000",
+         "relief-mesh decimate data/vase.obj out/vase-tenth.obj --ratio 0.1 --normals angle",
+         "relief-mesh decimate data/vase.obj out/vase-near.glb --max-error 0.01 --measure full",
+         "relief-mesh decimate data/*.obj -o out/small/ --format glb --ratio 0.5",
+         "relief-mesh decimate data/vase.obj out/vase-smooth.glb --ratio 0.2 "
+         "--max-normal-error 30 --weights normals=0.1 --keep-seams"});
 }
 
 struct SubdivideCommand {
@@ -510,7 +641,7 @@ ExitCode subdivide(const CLI::App& app, const SubdivideCommand& command) {
                                {}});
         return results;
     };
-    return reshape(app, command.request, change, Measuring::off,
+    return reshape(app, command.request, change, Measuring::none,
                    {{"levels", command.levels}, {"normals", enum_name(command.request.normals)}});
 }
 

@@ -360,6 +360,56 @@ std::string obstacles_text(const Obstacles& obstacles) {
     return text.empty() ? "the shape allows no fewer" : text;
 }
 
+/// Returns the normal of a triangle with length 1, or zero if it has none.
+glm::dvec3 unit_normal(const Mesh& mesh, const glm::uvec3& t) {
+    const glm::dvec3 a(mesh.positions[t.x]);
+    const glm::dvec3 cross =
+        glm::cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a);
+    const double length = glm::length(cross);
+    return length > 0.0 && std::isfinite(length) ? cross / length : glm::dvec3(0.0);
+}
+
+/// The normals of a mesh's triangles at the positions that a decimated mesh uses.
+class TrianglesAtPositions {
+  public:
+    TrianglesAtPositions(const Mesh& original, const FramedMesh& result)
+        : classes_(weld_positions(original.positions)), first_(original.positions.size() + 1, 0) {
+        std::vector<bool> is_used(original.positions.size(), false);
+        for (const std::uint32_t source : result.source_vertex)
+            is_used[classes_[source]] = true;
+        // Calls visit() with the position and the normal.
+        const auto visit_all = [&](const auto& visit) {
+            for (const glm::uvec3& triangle : original.triangles) {
+                const glm::uvec3 at(classes_[triangle.x], classes_[triangle.y],
+                                    classes_[triangle.z]);
+                if (!is_used[at.x] && !is_used[at.y] && !is_used[at.z]) continue;
+                const glm::dvec3 normal = unit_normal(original, triangle);
+                if (normal == glm::dvec3(0.0)) continue;
+                for (int i = 0; i < 3; ++i) {
+                    if (is_used[at[i]]) visit(at[i], normal);
+                }
+            }
+        };
+        visit_all([&](std::uint32_t at, const glm::dvec3&) { ++first_[at + 1]; });
+        std::partial_sum(first_.begin(), first_.end(), first_.begin());
+        normals_.resize(first_.back());
+        std::vector<std::size_t> next = first_;
+        visit_all(
+            [&](std::uint32_t at, const glm::dvec3& normal) { normals_[next[at]++] = normal; });
+    }
+
+    /// Returns the normals at the position of a vertex of the original.
+    [[nodiscard]] std::span<const glm::dvec3> normals(std::uint32_t vertex) const {
+        const std::uint32_t at = classes_[vertex];
+        return std::span(normals_).subspan(first_[at], first_[at + 1] - first_[at]);
+    }
+
+  private:
+    std::vector<std::uint32_t> classes_;
+    std::vector<std::size_t> first_;  ///< By position, the index of the first one of normals_.
+    std::vector<glm::dvec3> normals_;
+};
+
 }  // namespace
 
 std::vector<FramedMesh> decimated(std::span<const SceneMesh> meshes, const DecimateOptions& options,
@@ -415,46 +465,30 @@ double max_corner_angle(const Mesh& original, const FramedMesh& result) {
         throw InvalidInput(fmt::format("source vertex {} is named, but there are only {}", source,
                                        original.positions.size()));
     }
-    const std::vector<std::uint32_t> classes = weld_positions(original.positions);
-    const auto normal_of = [](const Mesh& mesh, const glm::uvec3& t) {
-        const glm::dvec3 a(mesh.positions[t.x]);
-        const glm::dvec3 cross =
-            glm::cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a);
-        const double length = glm::length(cross);
-        return length > 0.0 && std::isfinite(length) ? cross / length : glm::dvec3(0.0);
-    };
-    // The triangles of the original at each position, sorted by position.
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> at;
-    for (std::uint32_t t = 0; t < original.triangles.size(); ++t) {
-        if (normal_of(original, original.triangles[t]) == glm::dvec3(0.0)) continue;
-        for (int i = 0; i < 3; ++i)
-            at.emplace_back(classes[original.triangles[t][i]], t);
-    }
-    std::sort(at.begin(), at.end());
-    const double infinite = std::numeric_limits<double>::infinity();
+    const TrianglesAtPositions triangles_at(original, result);
+    // The squared length between unit vectors grows with their angle, and is faster.
     std::vector<double> largest(decimated.triangles.size(), 0.0);
     parallel_for(largest.size(), 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
-            const glm::dvec3 normal = normal_of(decimated, decimated.triangles[t]);
+            const glm::dvec3 normal = unit_normal(decimated, decimated.triangles[t]);
             if (normal == glm::dvec3(0.0)) continue;
             for (int i = 0; i < 3; ++i) {
-                const std::uint32_t position =
-                    classes[result.source_vertex[decimated.triangles[t][i]]];
-                const auto first = std::lower_bound(at.begin(), at.end(), std::pair(position, 0U));
-                double nearest = infinite;
-                std::size_t count = 0;
-                for (auto here = first; here != at.end() && here->first == position; ++here) {
-                    if (++count > max_valence) break;
-                    const glm::uvec3& triangle = original.triangles[here->second];
-                    nearest =
-                        std::min(nearest, angle_between(normal, normal_of(original, triangle)));
+                const std::uint32_t source = result.source_vertex[decimated.triangles[t][i]];
+                const auto normals = triangles_at.normals(source);
+                if (normals.empty() || normals.size() > max_valence) continue;
+                double nearest = std::numeric_limits<double>::infinity();
+                for (const glm::dvec3& candidate : normals) {
+                    const glm::dvec3 difference = normal - candidate;
+                    nearest = std::min(nearest, glm::dot(difference, difference));
                 }
-                if (count > max_valence) continue;
-                if (nearest < infinite) largest[t] = std::max(largest[t], nearest);
+                largest[t] = std::max(largest[t], nearest);
             }
         }
     });
-    return largest.empty() ? 0.0 : *std::max_element(largest.begin(), largest.end());
+    if (largest.empty()) return 0.0;
+    const double half_length =
+        std::min(std::sqrt(*std::max_element(largest.begin(), largest.end())) / 2.0, 1.0);
+    return 2.0 * portable::atan2(half_length, std::sqrt(1.0 - half_length * half_length));
 }
 
 }  // namespace relief

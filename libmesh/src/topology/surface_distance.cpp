@@ -7,6 +7,8 @@
 // triangles are divided into slabs with boxes of their own, which refer to the whole triangle. The
 // time is limited: the work of a search is measured first, and if all searches together would
 // exceed the limit, fewer points are examined, and the others are counted.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -21,6 +23,7 @@
 
 #include "geometry/direction.h"
 #include "parallel.h"
+#include "portable_math.h"
 #include "progress_stage.h"
 #include "relief/mesh/topology.h"
 #include "topology/triangle_distance.h"
@@ -42,9 +45,14 @@ struct Box {
         high = glm::max(high, p);
     }
     [[nodiscard]] double squared_distance(const glm::dvec3& p) const {
-        const glm::dvec3 away =
-            glm::max(glm::max(glm::dvec3(low) - p, p - glm::dvec3(high)), glm::dvec3(0.0));
-        return glm::dot(away, away);
+        // Written for each axis, which compiles without branches.
+        const auto away = [](double from, double to, double at) {
+            return std::max(std::max(from - at, at - to), 0.0);
+        };
+        const double x = away(low.x, high.x, p.x);
+        const double y = away(low.y, high.y, p.y);
+        const double z = away(low.z, high.z, p.z);
+        return x * x + y * y + z * z;
     }
 };
 
@@ -134,6 +142,9 @@ class Surface {
         return 1e-7 * std::max({size.x, size.y, size.z});
     }
     [[nodiscard]] Nearest nearest(const glm::dvec3& p, std::uint32_t guess, Work& work) const;
+    /// Adds prisms to the nodes that have thin triangles and are not too large, so that the time is
+    /// linear. The results of searches do not change.
+    void add_prisms();
     /// Divides long triangles into up to `more` additional slabs, and builds the hierarchy of
     /// these. The results of searches do not change.
     void divide(std::size_t more);
@@ -151,18 +162,17 @@ class Surface {
     void add_slabs(std::uint32_t triangle, double length);
     void sort_slabs();
     void build();
-    void build_prisms();
     [[nodiscard]] Prism prism_of(std::size_t begin, std::size_t end) const;
-    [[nodiscard]] double least_squared_distance(const glm::dvec3& p, const Box& box,
-                                                std::uint32_t prism) const {
-        const double distance = box.squared_distance(p);
-        return prism == no_prism ? distance
-                                 : std::max(distance, prisms_[prism].squared_distance(p));
-    }
-    [[nodiscard]] std::pair<double, std::size_t> entry(const glm::dvec3& p,
-                                                       std::size_t node) const {
-        const std::uint32_t prism = prism_of_node_.empty() ? no_prism : prism_of_node_[node];
-        return {least_squared_distance(p, boxes_[node], prism), node};
+    /// Returns a lower bound of the squared distance of a node, and the node. The prism is
+    /// considered only if the box does not exceed `known`.
+    [[nodiscard]] std::pair<double, std::size_t> entry(const glm::dvec3& p, std::size_t node,
+                                                       double known) const {
+        const double distance = boxes_[node].squared_distance(p);
+        const std::uint32_t prism =
+            prism_of_node_.empty() || distance > known ? no_prism : prism_of_node_[node];
+        return {
+            prism == no_prism ? distance : std::max(distance, prisms_[prism].squared_distance(p)),
+            node};
     }
     /// The leaves hold the triangles, or the slabs if there are any.
     [[nodiscard]] std::size_t items() const { return slabs_.empty() ? size() : slabs_.size(); }
@@ -211,13 +221,14 @@ void Surface::gather_corners() {
 
 /// Returns the key of a point along a curve through space, with 20 bits for each axis.
 std::uint64_t curve_key(const glm::dvec3& offset, double longest) {
+    // Moves bit i to bit 3 i: the upper half of each group of bits moves away from the lower one.
     const auto spread = [&](double x) {
-        std::uint64_t code = 0;
-        const auto bits =
-            static_cast<std::uint64_t>(std::clamp(x / longest * 1048575.0, 0.0, 1048575.0));
-        for (unsigned bit = 0; bit < 20; ++bit)
-            code |= ((bits >> bit) & 1U) << (3 * bit);
-        return code;
+        auto bits = static_cast<std::uint64_t>(std::clamp(x / longest * 1048575.0, 0.0, 1048575.0));
+        bits = (bits | bits << 32) & 0x001f00000000ffff;
+        bits = (bits | bits << 16) & 0x001f0000ff0000ff;
+        bits = (bits | bits << 8) & 0x100f00f00f00f00f;
+        bits = (bits | bits << 4) & 0x10c30c30c30c30c3;
+        return (bits | bits << 2) & 0x1249249249249249;
     };
     return spread(offset.x) | (spread(offset.y) << 1) | (spread(offset.z) << 2);
 }
@@ -367,12 +378,9 @@ void Surface::build() {
             boxes_[node].high = glm::max(boxes_[node].high, boxes_[child].high);
         }
     }
-    if (slabs_.empty()) build_prisms();
 }
 
-/// Builds prisms for the nodes that have thin triangles and are not too large, so that the time is
-/// linear.
-void Surface::build_prisms() {
+void Surface::add_prisms() {
     constexpr std::size_t max_leaves = 256;
     std::vector<std::uint8_t> is_thin(leaves_, 0);
     parallel_for(leaves_, 4096, [&](std::size_t begin, std::size_t end) {
@@ -444,7 +452,7 @@ Nearest Surface::nearest(const glm::dvec3& p, std::uint32_t guess, Work& work) c
     Nearest best{squared_distance(p, corners(guess)), guess};
     std::array<std::pair<double, std::size_t>, 64> stack;
     std::size_t height = 0;
-    stack[height++] = entry(p, 1);
+    stack[height++] = entry(p, 1, best.squared);
     while (height > 0) {
         const auto [distance, node] = stack[--height];
         if (distance > best.squared) continue;
@@ -463,8 +471,8 @@ Nearest Surface::nearest(const glm::dvec3& p, std::uint32_t guess, Work& work) c
             continue;
         }
         work += 2;
-        std::pair<double, std::size_t> near = entry(p, 2 * node);
-        std::pair<double, std::size_t> far = entry(p, 2 * node + 1);
+        std::pair<double, std::size_t> near = entry(p, 2 * node, best.squared);
+        std::pair<double, std::size_t> far = entry(p, 2 * node + 1, best.squared);
         if (far.first < near.first) std::swap(near, far);
         if (far.first <= best.squared) stack[height++] = far;
         if (near.first <= best.squared) stack[height++] = near;
@@ -473,8 +481,9 @@ Nearest Surface::nearest(const glm::dvec3& p, std::uint32_t guess, Work& work) c
 }
 
 /// Returns the mean work of searching for points of another surface, which is at least 1.
-Work mean_work(const Surface& from, const Surface& to) {
-    constexpr std::size_t most = 256;
+///
+/// \param most  the maximum number of searches
+Work mean_work(const Surface& from, const Surface& to, std::size_t most) {
     const std::size_t count = std::min(most, from.size());
     Work work = 0;
     std::uint32_t guess = 0;
@@ -492,8 +501,8 @@ glm::dvec3 normal_of(const Corners& corners) {
 /// Visits the pieces of a parallel loop with fixed borders, so that sums do not depend on the
 /// number of threads.
 template <typename Value, typename Measure>
-std::vector<Value> measured_in_pieces(std::size_t count, const Measure& measure) {
-    constexpr std::size_t piece = 4096;
+std::vector<Value> measured_in_pieces(std::size_t count, const Measure& measure,
+                                      std::size_t piece = 4096) {
     std::vector<Value> values((count + piece - 1) / piece);
     parallel_for(values.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
@@ -502,39 +511,86 @@ std::vector<Value> measured_in_pieces(std::size_t count, const Measure& measure)
     return values;
 }
 
-/// Computes means over samples at equal steps of area, and the maximum over them.
-///
-/// \param most  the maximum number of samples
-void measure_samples(const Surface& from, const Surface& to, std::size_t most,
-                     DistanceStats& stats) {
-    std::vector<double> areas;
-    areas.reserve(from.size());
-    for (std::size_t t = 0; t < from.size(); ++t) {
-        stats.area += glm::length(normal_of(from.corners(t))) / 2.0;
-        areas.push_back(stats.area);
+/// A place on a surface.
+struct Sample {
+    double area;             ///< The area of the triangles before it, and of a part of its own.
+    glm::dvec2 in_triangle;  ///< In the unit square, which is folded onto the triangle.
+};
+
+/// Places samples at equal steps of area, and within their triangles by a sequence with low
+/// discrepancy.
+struct EvenSamples {
+    static constexpr std::size_t piece = 4096;
+    std::size_t count;
+
+    [[nodiscard]] EvenSamples starting_at(std::size_t /*begin*/) const { return *this; }
+    [[nodiscard]] Sample at(std::size_t i, double area) const {
+        constexpr double step_u = 0.7548776662466927;
+        constexpr double step_v = 0.5698402909980532;
+        const double u = static_cast<double>(i) * step_u;
+        const double v = static_cast<double>(i) * step_v;
+        return {(static_cast<double>(i) + 0.5) / static_cast<double>(count) * area,
+                {u - std::floor(u), v - std::floor(v)}};
     }
-    if (!(stats.area > 0.0)) return;
-    const std::size_t count =
-        std::min(most, std::clamp<std::size_t>(std::max(from.size(), to.size()), 20'000, 50'000));
+};
+
+/// Divides the area into equal parts, and places an independent random sample in each.
+struct RandomSamples {
+    static constexpr std::size_t piece = 512;
+    std::size_t count;
+    std::uint32_t seed;
+    Random random{0};
+
+    /// Returns the samples of a piece, whose numbers do not depend on those of other pieces.
+    [[nodiscard]] RandomSamples starting_at(std::size_t begin) const {
+        const auto mixed = seed * 0x9e3779b9U + static_cast<std::uint32_t>(begin);
+        return {count, seed, Random(mixed)};
+    }
+    Sample at(std::size_t i, double area) {
+        const double part = static_cast<double>(i) + random.between(0.0, 1.0);
+        const double u = random.between(0.0, 1.0);
+        return {part / static_cast<double>(count) * area, {u, random.between(0.0, 1.0)}};
+    }
+};
+
+/// The sum of the areas up to each triangle.
+std::vector<double> area_sums(const Surface& surface) {
+    std::vector<double> sums;
+    sums.reserve(surface.size());
+    double area = 0.0;
+    for (std::size_t t = 0; t < surface.size(); ++t) {
+        area += glm::length(normal_of(surface.corners(t))) / 2.0;
+        sums.push_back(area);
+    }
+    return sums;
+}
+
+/// Computes means over samples, and the maximum over them.
+///
+/// \param areas  area_sums() of `from`
+template <typename Samples>
+void measure_samples(const Surface& from, const Surface& to, std::span<const double> areas,
+                     const Samples& all_samples, DistanceStats& stats) {
+    const std::size_t count = all_samples.count;
+    stats.area = areas.back();
+    if (!(stats.area > 0.0) || count == 0) return;
+    stats.samples = count;
     using Sums = DistanceStats;
-    const std::vector<Sums> pieces =
-        measured_in_pieces<Sums>(count, [&](std::size_t begin, std::size_t end) {
+    const std::vector<Sums> pieces = measured_in_pieces<Sums>(
+        count,
+        [&](std::size_t begin, std::size_t end) {
             Sums sums;
             Work work = 0;
             std::uint32_t guess = 0;
+            Samples samples = all_samples.starting_at(begin);
             for (std::size_t i = begin; i < end; ++i) {
                 check_cancelled();
-                const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
-                const auto found = std::lower_bound(areas.begin(), areas.end(), at * stats.area);
+                const Sample sample = samples.at(i, stats.area);
+                const auto found = std::lower_bound(areas.begin(), areas.end(), sample.area);
                 const auto t =
                     std::min(static_cast<std::size_t>(found - areas.begin()), from.size() - 1);
-                // A sequence with low discrepancy places the sample within its triangle.
-                constexpr double step_u = 0.7548776662466927;
-                constexpr double step_v = 0.5698402909980532;
-                double u = static_cast<double>(i) * step_u;
-                double v = static_cast<double>(i) * step_v;
-                u -= std::floor(u);
-                v -= std::floor(v);
+                double u = sample.in_triangle.x;
+                double v = sample.in_triangle.y;
                 if (u + v > 1.0) {
                     u = 1.0 - u;
                     v = 1.0 - v;
@@ -553,7 +609,8 @@ void measure_samples(const Surface& from, const Surface& to, std::size_t most,
                 sums.max_degrees = std::max(sums.max_degrees, degrees);
             }
             return sums;
-        });
+        },
+        Samples::piece);
     for (const Sums& piece : pieces) {
         stats.mean += piece.mean;
         stats.rms += piece.rms;
@@ -720,23 +777,45 @@ DistanceStats distances_on(const Surface& from, const Surface& to, Work work) {
     constexpr std::size_t min_samples = 1000;
     DistanceStats stats;
     const std::size_t most = std::max<std::size_t>(min_samples, max_work / work);
-    measure_samples(from, to, most, stats);
+    const std::size_t count =
+        std::min(most, std::clamp<std::size_t>(std::max(from.size(), to.size()), 20'000, 50'000));
+    measure_samples(from, to, area_sums(from), EvenSamples{count}, stats);
     measure_maximum(from, to, work, stats);
     return stats;
 }
 
 DistanceStats distances(const Surface& from, const Surface& to) {
-    const Work work = mean_work(from, to);
+    constexpr std::size_t searches = 256;
+    const Work work = mean_work(from, to, searches);
     if (work <= little_work) return distances_on(from, to, work);
     Surface divided = to;
     Work of_divided = work;
     for (const std::size_t more : {500'000, 2'000'000}) {
         divided.divide(more);
-        of_divided = mean_work(from, divided);
+        of_divided = mean_work(from, divided, searches);
         if (of_divided <= little_work) break;
     }
     return of_divided < work ? distances_on(from, divided, of_divided)
                              : distances_on(from, to, work);
+}
+
+/// Measures at random samples, fewer if searches take long.
+DistanceStats random_distances(const Surface& from, Surface& to, std::size_t samples,
+                               std::uint32_t seed) {
+    DistanceStats stats;
+    if (samples > 0) {
+        constexpr std::size_t searches = 16;
+        Work work = mean_work(from, to, searches);
+        if (work > little_work) {
+            to.add_prisms();
+            work = mean_work(from, to, searches);
+        }
+        // A few searches far from each other have worse guesses than those of many samples.
+        constexpr Work enough = 2 * little_work;
+        if (work > enough) samples = std::max<std::size_t>(samples * enough / work, 1);
+    }
+    measure_samples(from, to, area_sums(from), RandomSamples{samples, seed}, stats);
+    return stats;
 }
 
 }  // namespace
@@ -744,10 +823,32 @@ DistanceStats distances(const Surface& from, const Surface& to) {
 SurfaceDistance surface_distance(const Mesh& a, const Mesh& b) {
     validate(a);
     validate(b);
-    const Surface surface_a(a);
-    const Surface surface_b(b);
+    Surface surface_a(a);
+    Surface surface_b(b);
     if (surface_a.size() == 0 || surface_b.size() == 0) return {};
+    surface_a.add_prisms();
+    surface_b.add_prisms();
     return {distances(surface_a, surface_b), distances(surface_b, surface_a)};
+}
+
+SurfaceDistance sampled_distance(const Mesh& a, const Mesh& b, std::size_t samples_a,
+                                 std::size_t samples_b, std::uint32_t seed) {
+    validate(a);
+    validate(b);
+    Surface surface_a(a);
+    Surface surface_b(b);
+    if (surface_a.size() == 0 || surface_b.size() == 0) return {};
+    return {random_distances(surface_a, surface_b, samples_a, seed),
+            random_distances(surface_b, surface_a, samples_b, seed)};
+}
+
+double max_farther_part(std::size_t samples, double confidence) {
+    if (!(confidence > 0.0 && confidence < 1.0))
+        throw InvalidInput(
+            fmt::format("the confidence is {}, but must be between 0 and 1", confidence));
+    // The probability that no sample is in a part p of the area is at most (1 - p)^samples.
+    return samples == 0 ? 1.0
+                        : 1.0 - portable::pow(1.0 - confidence, 1.0 / static_cast<double>(samples));
 }
 
 }  // namespace relief

@@ -12,7 +12,9 @@
 #include <random>
 #include <vector>
 
+#include "relief/mesh/execution.h"
 #include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
 #include "relief/mesh/topology.h"
 #include "support/shapes.h"
 
@@ -206,6 +208,121 @@ TEST(SurfaceDistance, NonFiniteTrianglesAndEmptyMeshesAreIgnored) {
     grid.tangents.clear();
     grid.material_ranges.clear();
     EXPECT_NEAR(surface_distance(grid, other).from_a.max, 0.0, 1e-6);
+}
+
+TEST(SampledDistance, AShiftedPlaneHasTheDistanceOfTheShift) {
+    const Mesh grid = test::grid(4);
+    Mesh shifted = grid;
+    for (glm::vec3& p : shifted.positions)
+        p.z += 0.25F;
+    const SurfaceDistance distance = sampled_distance(grid, shifted, 1000, 10);
+    for (const DistanceStats& stats : {distance.from_a, distance.from_b}) {
+        EXPECT_NEAR(stats.mean, 0.25, 1e-12);
+        EXPECT_NEAR(stats.rms, 0.25, 1e-12);
+        EXPECT_NEAR(stats.max, 0.25, 1e-12);
+        EXPECT_NEAR(stats.max_degrees, 0.0, 1e-6);
+        EXPECT_NEAR(stats.area, 1.0, 1e-6);
+    }
+    EXPECT_EQ(distance.from_a.samples, 1000U);
+    EXPECT_EQ(distance.from_b.samples, 10U);
+}
+
+TEST(SampledDistance, AgreesWithTheFullMeasurementOfADecimatedSphere) {
+    const Mesh sphere = make_sphere(96, 48);
+    DecimateOptions options;
+    options.triangles = 600;
+    const Mesh small = decimated(sphere, options).mesh;
+    const SurfaceDistance full = surface_distance(sphere, small);
+    const SurfaceDistance sampled = sampled_distance(sphere, small, 5000, 5000);
+    for (const auto side : {&SurfaceDistance::from_a, &SurfaceDistance::from_b}) {
+        const DistanceStats& all = full.*side;
+        const DistanceStats& some = sampled.*side;
+        // The deviation of a mean of 5000 samples is 1 % if single ones deviate by 70 %.
+        EXPECT_NEAR(some.mean, all.mean, 0.03 * all.mean);
+        EXPECT_NEAR(some.rms, all.rms, 0.03 * all.rms);
+        EXPECT_NEAR(some.mean_degrees, all.mean_degrees, 0.03 * all.mean_degrees);
+        EXPECT_LE(some.max, all.max);
+        EXPECT_GT(some.max, 0.8 * all.max);
+        EXPECT_EQ(some.area, all.area);
+    }
+}
+
+TEST(SampledDistance, TheStatedPartOfTheAreaIsExceededNoMoreOftenThanStated) {
+    // The distance of the unit square from a tilted plane is proportional to x, so the part of the
+    // area that is farther than a distance is known.
+    const Mesh square = test::grid(1);
+    constexpr float slope = 0.01F;
+    const Mesh plane = triangle({-9, -9, -9 * slope}, {20, -9, 20 * slope}, {-9, 20, -9 * slope});
+    const double largest = surface_distance(square, plane).from_a.max;
+    ASSERT_NEAR(largest, slope, 1e-5);
+    constexpr std::uint32_t trials = 1000;
+    for (const std::size_t samples : {20U, 59U}) {
+        std::vector<double> farther;
+        for (std::uint32_t seed = 0; seed < trials; ++seed)
+            farther.push_back(1.0 - sampled_distance(square, plane, samples, 0, seed).from_a.max /
+                                        largest);
+        for (const double confidence : {0.5, 0.95}) {
+            const double stated = max_farther_part(samples, confidence);
+            const auto exceeded = static_cast<double>(std::count_if(
+                farther.begin(), farther.end(), [&](double part) { return part > stated; }));
+            // Three standard deviations of the number of 1000 trials.
+            const double expected = (1.0 - confidence) * trials;
+            const double deviation = 3.0 * std::sqrt(expected * confidence);
+            EXPECT_LE(exceeded, expected + deviation) << confidence << ", " << samples;
+            EXPECT_GE(exceeded, 0.5 * expected) << "the statement is too weak";
+        }
+    }
+}
+
+TEST(SampledDistance, MaxFartherPartIsThatOfTheOrderStatistic) {
+    EXPECT_EQ(max_farther_part(0, 0.95), 1.0);
+    EXPECT_NEAR(max_farther_part(1, 0.95), 0.95, 1e-15);
+    EXPECT_NEAR(max_farther_part(2, 0.75), 0.5, 1e-15);
+    EXPECT_NEAR(max_farther_part(3000, 0.95), 0.000998, 1e-6);
+    for (const double confidence : {0.0, 1.0, std::numeric_limits<double>::quiet_NaN()})
+        EXPECT_THROW(max_farther_part(100, confidence), InvalidInput) << confidence;
+}
+
+TEST(SampledDistance, IsTheSameForAnyNumberOfThreads) {
+    const Mesh sphere = make_sphere(96, 48);
+    const Mesh coarse = make_sphere(24, 12);
+    const auto measured = [&](unsigned threads) {
+        set_thread_limit(threads);
+        const SurfaceDistance distance = sampled_distance(sphere, coarse, 3000, 2000);
+        set_thread_limit(0);
+        std::vector<double> values;
+        for (const DistanceStats& stats : {distance.from_a, distance.from_b})
+            values.insert(values.end(), {stats.mean, stats.rms, stats.max, stats.mean_degrees,
+                                         stats.max_degrees, stats.area});
+        return values;
+    };
+    const std::vector<double> one = measured(1);
+    EXPECT_EQ(one, measured(2));
+    EXPECT_EQ(one, measured(5));
+}
+
+TEST(SampledDistance, FewerSamplesAreExaminedOfCrossingNeedles) {
+    const Mesh needles = crossing_needles(5000);
+    Mesh moved = needles;
+    for (glm::vec3& p : moved.positions)
+        p.x += 1e-4F;
+    for (const DistanceStats& stats : {sampled_distance(needles, moved, 1000, 1000).from_a,
+                                       sampled_distance(needles, moved, 1000, 1000).from_b}) {
+        EXPECT_LT(stats.samples, 1000U);
+        EXPECT_GT(stats.samples, 0U);
+        EXPECT_LE(stats.max, 1.01e-4);
+        EXPECT_GT(stats.mean, 0.1e-4);
+    }
+}
+
+TEST(SampledDistance, SurfacesWithoutAreaOrTrianglesHaveNoSamples) {
+    const Mesh grid = test::grid(2);
+    const Mesh line = triangle({0, 0, 0}, {1, 0, 0}, {2, 0, 0});
+    EXPECT_EQ(sampled_distance(grid, {}, 100, 100).from_a.samples, 0U);
+    const SurfaceDistance distance = sampled_distance(line, grid, 100, 100);
+    EXPECT_EQ(distance.from_a.samples, 0U);
+    EXPECT_EQ(distance.from_b.samples, 100U);
+    EXPECT_EQ(sampled_distance(grid, grid, 0, 1).from_a.samples, 0U);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -132,10 +133,11 @@ double max_corner_angle(const Mesh& original, const FramedMesh& result);
 struct DistanceStats {
     double mean = 0.0;          ///< Over area, of samples; in the unit of the meshes.
     double rms = 0.0;           ///< Over area, of samples.
-    double max = 0.0;           ///< At the examined points, which include all vertices.
+    double max = 0.0;           ///< At the examined points.
     double mean_degrees = 0.0;  ///< Over area, of samples.
     double max_degrees = 0.0;   ///< Of samples.
     double area = 0.0;
+    std::size_t samples = 0;
     /// The vertices and triangles that were not examined for the maximum, because that would take
     /// too long: more than 0 only for many long triangles that cross each other.
     std::size_t omitted = 0;
@@ -155,6 +157,28 @@ struct SurfaceDistance {
 ///         if there are many) where a distance between their corners may be larger. The work has a
 ///         limit: beyond it, fewer points are examined, which `omitted` counts
 SurfaceDistance surface_distance(const Mesh& a, const Mesh& b);
+
+/// Measures the distance between two surfaces at random points only, which is faster than
+/// surface_distance(). max_farther_part() states how much of the area may be farther.
+///
+/// \param a, b  valid (mesh.h). Triangles with a non-finite corner are ignored
+/// \param samples_a, samples_b  the number of samples on each surface: one in each of as many equal
+///         parts of the area. If many long triangles cross each other, fewer are examined
+/// \param seed  of the random numbers; the same seed gives the same result. The parts of a surface
+///         that is measured in parts need different ones
+/// \return zeros if one of the surfaces has no triangle. A surface without area has no samples
+SurfaceDistance sampled_distance(const Mesh& a, const Mesh& b, std::size_t samples_a,
+                                 std::size_t samples_b, std::uint32_t seed = 0);
+
+/// Returns the largest part p of the area that is farther than the maximum of random samples, with
+/// a confidence: 1 - p = (1 - confidence)^(1 / samples), because all samples are outside of a part
+/// p with a probability of at most (1 - p)^samples.
+///
+/// \param samples  independent and uniformly distributed, or one in each of as many equal parts of
+///         the area; 0: the result is 1
+/// \param confidence  between 0 and 1, for example 0.95
+/// \throws InvalidInput if the confidence is out of range
+double max_farther_part(std::size_t samples, double confidence);
 
 /// Applies Loop subdivision: each level splits every triangle into four and smooths all positions.
 ///
