@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "relief-mesh/reshape.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/topology.h"
 #include "support/labels.h"
@@ -274,6 +275,26 @@ TEST(DecimateCommand, QuickMeasurementsStateTheirConfidence) {
     // The same numbers for any number of threads.
     EXPECT_EQ(run("--threads 1").second["distance"], quick["distance"]);
     EXPECT_EQ(workplace.run(line + "--quiet --measure none").exit_code, 0);
+}
+
+TEST(DecimateCommand, SamplesOfSeveralMeshesCountByTheirAreas) {
+    const auto measured = [](double area, std::size_t samples, double max) {
+        SurfaceDistance distance;
+        distance.from_a.area = area;
+        distance.from_a.samples = samples;
+        distance.from_a.max = max;
+        return distance;
+    };
+    // 300 samples on three quarters of the area count as 400, and 90 on a quarter as 360. A mesh
+    // without area counts for neither.
+    const SurfaceDistance all =
+        joined_distance({measured(3.0, 300, 0.5), measured(1.0, 90, 0.25), measured(0.0, 0, 0.0)});
+    EXPECT_EQ(all.from_a.samples, 360U);
+    EXPECT_EQ(all.from_a.max, 0.5);
+    EXPECT_EQ(all.from_b.samples, 0U);
+    // 1000 samples, each mesh with its share, rounded up.
+    EXPECT_EQ(joined_distance({measured(0.1, 334, 0.0), measured(0.2, 667, 0.0)}).from_a.samples,
+              1000U);
 }
 
 TEST(DecimateCommand, TheMeasuredDistanceIsWithinMaxError) {
