@@ -11,6 +11,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "relief-mesh/reshape.h"
 #include "relief/mesh/gltf_document.h"
@@ -671,6 +672,72 @@ TEST(LodsCommand, SwitchesAtTheDistanceOfEqualDifference) {
     EXPECT_LT(half["levels"][1]["pixels"], half["levels"][0]["pixels"]);
 }
 
+/// Returns the steps of 2^(1/4) of the sizes at which levels take over.
+std::vector<int> steps_of(const json& levels) {
+    std::vector<int> steps;
+    for (const json& level : levels)
+        steps.push_back(
+            static_cast<int>(std::lround(4.0 * std::log2(level["pixels"].get<double>()))));
+    return steps;
+}
+
+TEST_LABELS(not_sanitized);
+TEST(LodsCommand, TheSizesOfKnownModelsAreThoseOfAnExhaustiveSearch) {
+    // Found by drawing each size in full. Drivers may differ by a step.
+    const Workplace workplace;
+    const std::vector<int> vase = steps_of(lods_report(workplace, "data/vase.obj a.glb")["levels"]);
+    EXPECT_THAT(vase, testing::Pointwise(testing::DoubleNear(1.0), {33, 28, 24}));
+    const std::vector<int> urn =
+        steps_of(lods_report(workplace, "data/urn-low.obj b.glb")["levels"]);
+    EXPECT_THAT(urn, testing::Pointwise(testing::DoubleNear(1.0), {24, 21, 18}));
+}
+
+TEST_LABELS(not_sanitized);
+TEST(LodsCommand, AFolderGetsTheLevelsOfEachModelOfAList) {
+    const Workplace workplace;
+    workplace.write("list.txt", "data/urn-low.obj\nsquare.obj\n");
+    workplace.write_square("square.obj");
+    workplace.write("damaged.obj", "v 0 0\n");
+    const ProgramResult result = workplace.run(
+        "relief-mesh lods @list.txt damaged.obj -o out/ --format gltf --report lods.json");
+    EXPECT_EQ(result.exit_code, 1) << "one model fails, the others are written";
+    EXPECT_THAT(result.out, HasSubstr("out/urn-low.gltf: 720 -> 360 below "));
+    EXPECT_THAT(result.error, HasSubstr("damaged.obj"));
+    EXPECT_EQ(workplace.outputs(), "square.bin square.gltf urn-low.bin urn-low.gltf");
+    const json report = json::parse(workplace.read("lods.json"));
+    EXPECT_EQ(report["failed"], 1);
+    ASSERT_EQ(report["files"].size(), 3U);
+    const json& levels = report["files"][0]["levels"];
+    const json alone = lods_report(workplace, "data/urn-low.obj alone.glb");
+    EXPECT_EQ(steps_of(levels), steps_of(alone["levels"]));
+    ASSERT_EQ(levels.size(), 3U);
+    for (const json& level : levels) {
+        EXPECT_EQ(level["file"], "out/urn-low.gltf");
+        ASSERT_EQ(level["meshes"].size(), 1U);
+        EXPECT_EQ(level["meshes"][0]["mesh"], 0);
+        EXPECT_EQ(level["meshes"][0]["triangles"], level["triangles"]);
+        EXPECT_EQ(level["meshes"][0]["pixels"], level["pixels"]);
+    }
+}
+
+TEST(LodsCommand, LevelsOfOneModelDoNotReplaceFilesOfAnother) {
+    const Workplace workplace;
+    workplace.write_square("a.obj");
+    workplace.write_square("a_LOD1.obj");
+    ASSERT_EQ(workplace.run("relief-mesh process a.obj a.glb").exit_code, 0);
+    ASSERT_EQ(workplace.run("relief-mesh process a.obj a_LOD1.glb").exit_code, 0);
+    workplace.write("old.glb", "old");
+    expect_refusals(workplace, "relief-mesh", "old.glb",
+                    {{"relief-mesh lods a.glb a_LOD1.glb -o ./ --separate", 2,
+                      "--separate ./a_LOD1.glb: is also another file of the command"},
+                     {"relief-mesh lods a.obj out/old.glb --format glb", 2,
+                      "--format: the name out/old.glb already has a format (omit --format, or give "
+                      "a folder: -o out/)"},
+                     {"relief-mesh lods a.obj a.glb -o out/", 2,
+                      "a.obj and a.glb: have the same output out/a.glb"},
+                     {"relief-mesh lods a.obj", 2, "OUT is missing"}});
+}
+
 TEST(LodsCommand, WithoutOpenGLUsesDistanceWithANote) {
     const Workplace workplace;
     const std::string arguments = "relief-mesh lods data/vase.obj out/a.gltf --levels 1";
@@ -734,6 +801,7 @@ TEST(LodsCommand, SeparateFilesHoldALevelEach) {
         EXPECT_FALSE(root.contains("extensionsUsed"));
     }
     EXPECT_NE(report["levels"][1]["flip"], nullptr);
+    EXPECT_EQ(report["levels"][1]["file"], "out/vase_LOD2.gltf");
 }
 
 TEST(LodsCommand, ARiggedModelKeepsItsRigInEachLevel) {

@@ -59,6 +59,36 @@ double pixels_at(int step) {
     return pixels;
 }
 
+/// The largest size that is drawn, 362 pixels. A larger one is compared in pictures of this size,
+/// with an error that is the same part of the mesh: both differences shrink alike. The result
+/// differs by up to 2 steps from that of larger pictures, which take several times as long.
+constexpr int max_drawn_step = 34;
+
+/// The search begins with at most 64 pixels, because small pictures cost less and predict the
+/// others.
+constexpr int max_first_step = 24;
+
+int drawn_step(int step) {
+    return std::min(step, max_drawn_step);
+}
+
+/// Returns the number of steps, not 0, to where a level probably differs as much as the moved
+/// input.
+int predicted_stride(const LevelSwitch& here) {
+    // The ratio of both differences is about proportional to this power of the size.
+    constexpr double power = 0.5;
+    constexpr double max_stride = 12.0;
+    constexpr double steps_per_octave = 4.0;
+    const double difference = std::max(here.flip, 1e-6);
+    const double moved = std::max(here.moved_flip, 1e-6);
+    const double octaves =
+        (relief::detail::portable::log(moved) - relief::detail::portable::log(difference)) /
+        (power * std::numbers::ln2);
+    const double steps = std::clamp(steps_per_octave * octaves, -max_stride, max_stride);
+    const bool grows = here.flip <= here.moved_flip;
+    return grows ? std::max(1, static_cast<int>(steps)) : std::min(-1, static_cast<int>(steps));
+}
+
 int step_below(double pixels) {
     int step = max_step;
     while (step > min_step && pixels_at(step) > pixels)
@@ -66,24 +96,63 @@ int step_below(double pixels) {
     return step;
 }
 
-/// Returns the mean of the FLIP map over the pixels that a picture covers.
-double covered_mean(const FlipDifference& difference, const Image& a, const Image& b) {
-    const auto map = difference.map.as<float>();
+/// A part of a picture; empty if begin and end are equal.
+struct Rectangle {
+    glm::ivec2 begin{0};
+    glm::ivec2 end{0};
+
+    [[nodiscard]] glm::ivec2 size() const { return end - begin; }
+};
+
+/// Returns the pixels around those that one of the pictures covers, and their number.
+std::pair<Rectangle, std::size_t> covered_part(const Image& a, const Image& b) {
     const auto of_a = a.as<std::uint8_t>();
     const auto of_b = b.as<std::uint8_t>();
-    double sum = 0.0;
+    const glm::ivec2 whole(a.width, a.height);
+    Rectangle covered{whole, glm::ivec2(0)};
     std::size_t count = 0;
-    for (std::size_t i = 0; i < map.size(); ++i) {
-        sum += static_cast<double>(map[i]);
-        if (of_a[4 * i + 3] != 0 || of_b[4 * i + 3] != 0) ++count;
+    for (int y = 0; y < whole.y; ++y) {
+        for (int x = 0; x < whole.x; ++x) {
+            const auto alpha = 4 * static_cast<std::size_t>(y * whole.x + x) + 3;
+            if (of_a[alpha] == 0 && of_b[alpha] == 0) continue;
+            covered.begin = glm::min(covered.begin, glm::ivec2(x, y));
+            covered.end = glm::max(covered.end, glm::ivec2(x + 1, y + 1));
+            ++count;
+        }
     }
-    return count == 0 ? 0.0 : sum / static_cast<double>(count);
+    // FLIP is zero beyond the radius of its filters, 5 pixels.
+    constexpr int margin = 6;
+    if (count == 0) return {};
+    return {
+        {glm::max(covered.begin - margin, glm::ivec2(0)), glm::min(covered.end + margin, whole)},
+        count};
 }
 
+Image cropped(const Image& image, const Rectangle& part) {
+    const auto from = image.as<std::uint8_t>();
+    const auto row = static_cast<std::size_t>(image.width) * 4;
+    std::vector<std::uint8_t> samples;
+    for (int y = part.begin.y; y < part.end.y; ++y) {
+        const auto line = from.subspan(static_cast<std::size_t>(y) * row, row)
+                              .subspan(4 * static_cast<std::size_t>(part.begin.x),
+                                       4 * static_cast<std::size_t>(part.size().x));
+        samples.insert(samples.end(), line.begin(), line.end());
+    }
+    return {part.size().x, part.size().y, 4, image.color_space, std::move(samples)};
+}
+
+/// Returns the mean FLIP difference over the pixels that one of the pictures covers.
 double difference_of(const Image& reference, const Image& picture) {
     // A viewer at a distance of the screen's width.
     constexpr double pixels_per_degree = lod_screen_width * std::numbers::pi / 180.0;
-    return covered_mean(flip_difference(reference, picture, pixels_per_degree), reference, picture);
+    const auto [part, count] = covered_part(reference, picture);
+    if (count == 0) return 0.0;
+    const FlipDifference difference =
+        flip_difference(cropped(reference, part), cropped(picture, part), pixels_per_degree);
+    double sum = 0.0;
+    for (const float value : difference.map.as<float>())
+        sum += static_cast<double>(value);
+    return sum / static_cast<double>(count);
 }
 
 /// A camera whose picture has the pixels of the screen around the mesh, which is scaled to a
@@ -126,79 +195,90 @@ struct LevelPictures::Implementation {
     explicit Implementation(double error)
         : pixel_error(error), context(std::make_unique<Context>()), cache(*context) {}
 
-    /// The input at one size.
-    struct Reference {
-        std::vector<Image> pictures;  ///< By view.
-        std::vector<double> moved;    ///< FLIP of the moved input, by view.
-    };
+    using Key = std::pair<int, std::size_t>;  ///< The step of a size and the index of a view.
+
     struct Subject {
         Scene input;
         Scene level;
         glm::dvec3 center{0.0};
         double diameter = 0.0;
         bool is_drawable = false;
-        std::map<int, Reference> references;  ///< By step.
+        // By step and view. Levels share what is known of the input.
+        std::map<Key, Image> pictures;      ///< Of the input.
+        std::map<Key, double> moved_flips;  ///< Of the moved input.
+        std::map<Key, double> level_flips;  ///< Of the level.
     };
 
-    std::vector<Image> draw(const Scene& scene, int step, double shift);
-    const Reference& reference(Subject& subject, int step);
+    Image draw(const Scene& scene, Key at, double shift);
+    const Image& picture(Subject& subject, Key at);
+    double moved_flip(Subject& subject, Key at);
+    double level_flip(Subject& subject, Key at);
     /// Returns the difference in the view in which it is largest relative to that of the moved
-    /// input.
+    /// input, or in the first view in which it is larger.
     LevelSwitch difference(Subject& subject, int step);
 
     double pixel_error;
     std::unique_ptr<Context> context;
     RenderCache cache;
     std::vector<Subject> subjects;
+    std::size_t first_view = 0;  ///< The view that decided last.
 };
 
-std::vector<Image> LevelPictures::Implementation::draw(const Scene& scene, int step, double shift) {
+Image LevelPictures::Implementation::draw(const Scene& scene, Key at, double shift) {
+    const auto [step, view] = at;
     const double pixels = pixels_at(step);
     // Perspective enlarges the sphere by up to 6 %.
     constexpr double enlarged = 1.06;
     constexpr int margin = 8;
     const int side = static_cast<int>(std::ceil(enlarged * pixels)) + margin;
     const FrameSettings settings{.width = side, .height = side};
-    std::vector<Image> pictures;
-    std::unique_ptr<Renderer> renderer;
+    Scene lit = scene;
+    add_default_lights(lit, camera_at(level_views[view], pixels, side, 0.0));
     Report ignored;  // Findings of images are those of the input, which is reported elsewhere.
-    for (const LevelView& view : level_views) {
-        Scene lit = scene;
-        add_default_lights(lit, camera_at(view, pixels, side, 0.0));
-        if (renderer) {
-            renderer->move(lit);
-        } else {
-            renderer = std::make_unique<Renderer>(cache, *context, lit, plan_effects(lit, settings),
-                                                  settings, ignored);
-        }
-        pictures.push_back(renderer->draw(camera_at(view, pixels, side, shift)).image);
-    }
-    return pictures;
+    Renderer renderer(cache, *context, lit, plan_effects(lit, settings), settings, ignored);
+    return renderer.draw(camera_at(level_views[view], pixels, side, shift)).image;
 }
 
-const LevelPictures::Implementation::Reference& LevelPictures::Implementation::reference(
-    Subject& subject, int step) {
-    const auto [place, is_new] = subject.references.try_emplace(step);
-    if (!is_new) return place->second;
-    Reference& made = place->second;
-    made.pictures = draw(subject.input, step, 0.0);
-    const std::vector<Image> moved = draw(subject.input, step, pixel_error / std::numbers::sqrt2);
-    for (std::size_t i = 0; i < moved.size(); ++i)
-        made.moved.push_back(difference_of(made.pictures[i], moved[i]));
-    return made;
+const Image& LevelPictures::Implementation::picture(Subject& subject, Key at) {
+    const auto [place, is_new] = subject.pictures.try_emplace(at);
+    if (is_new) place->second = draw(subject.input, at, 0.0);
+    return place->second;
+}
+
+double LevelPictures::Implementation::moved_flip(Subject& subject, Key at) {
+    const auto [place, is_new] = subject.moved_flips.try_emplace(at);
+    if (is_new) {
+        const Key drawn{drawn_step(at.first), at.second};
+        const double shift =
+            pixel_error / std::numbers::sqrt2 * pixels_at(drawn.first) / pixels_at(at.first);
+        place->second = difference_of(picture(subject, drawn), draw(subject.input, drawn, shift));
+    }
+    return place->second;
+}
+
+double LevelPictures::Implementation::level_flip(Subject& subject, Key at) {
+    const Key drawn{drawn_step(at.first), at.second};
+    const auto [place, is_new] = subject.level_flips.try_emplace(drawn);
+    if (is_new)
+        place->second = difference_of(picture(subject, drawn), draw(subject.level, drawn, 0.0));
+    return place->second;
 }
 
 LevelSwitch LevelPictures::Implementation::difference(Subject& subject, int step) {
-    const Reference& input = reference(subject, step);
-    const std::vector<Image> level = draw(subject.level, step, 0.0);
     LevelSwitch worst{pixels_at(step), 0.0, 0.0};
     double largest = -std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < level.size(); ++i) {
-        const double flip = difference_of(input.pictures[i], level[i]);
-        if (flip - input.moved[i] <= largest) continue;
-        largest = flip - input.moved[i];
+    const std::size_t first = first_view;
+    for (std::size_t i = 0; i < level_views.size(); ++i) {
+        const Key at{step, (first + i) % level_views.size()};
+        const double flip = level_flip(subject, at);
+        const double moved = moved_flip(subject, at);
+        if (flip - moved <= largest) continue;
+        largest = flip - moved;
         worst.flip = flip;
-        worst.moved_flip = input.moved[i];
+        worst.moved_flip = moved;
+        first_view = at.second;
+        // At the smallest size, the worst view is reported in any case.
+        if (flip > moved && step > min_step) break;
     }
     return worst;
 }
@@ -212,6 +292,8 @@ void LevelPictures::set_input(const GltfDocument& document, std::span<const std:
                               const std::filesystem::path& file) {
     auto& subjects = implementation_->subjects;
     subjects.clear();
+    implementation_->cache.drop_unused();
+    implementation_->first_view = 0;
     for (Scene& scene : mesh_scenes(document, meshes, file)) {
         Implementation::Subject& subject = subjects.emplace_back();
         subject.input = std::move(scene);
@@ -231,52 +313,38 @@ void LevelPictures::set_level(const GltfDocument& document, std::span<const std:
         Implementation::Subject& subject = subjects[i];
         subject.level = std::move(scenes[i]);
         normalize(subject.level, subject.center, subject.diameter);
+        subject.level_flips.clear();
         // The same values, so that the cache does not read images again.
         subject.level.images = subject.input.images;
         subject.level.materials = subject.input.materials;
     }
-    implementation_->cache.drop_unused();
 }
 
 std::optional<LevelSwitch> LevelPictures::find_switch(std::size_t mesh, double start, double most) {
     Implementation::Subject& subject = implementation_->subjects[mesh];
     if (!subject.is_drawable || !(most >= pixels_at(min_step))) return std::nullopt;
     const int last = step_below(most);
-    // Coarser levels are smaller.
-    subject.references.erase(subject.references.upper_bound(last), subject.references.end());
-    int step = std::min(step_below(start), last);
-    LevelSwitch at = implementation_->difference(subject, step);
-    const auto is_within = [](const LevelSwitch& here) { return here.flip <= here.moved_flip; };
-    // The time of a picture grows with its area. Upwards, the stride is therefore small; downwards,
-    // it doubles. Then the search bisects.
-    const bool grows = is_within(at);
-    std::optional<int> beyond;
-    for (int stride = grows ? 2 : 1; !beyond; stride *= grows ? 1 : 2) {
-        const int next = grows ? std::min(step + stride, last) : std::max(step - stride, min_step);
-        if (next == step) return at;
-        const LevelSwitch here = implementation_->difference(subject, next);
-        if (is_within(here) == grows) {
-            step = next;
-            at = here;
+    // The search jumps to where the ratio of the differences predicts the limit, between the bounds
+    // that are known. The largest step that is known to be within the error, and the smallest one
+    // beyond it.
+    std::optional<int> within, beyond;
+    std::optional<LevelSwitch> found;
+    int step = std::min({step_below(start), last, max_first_step});
+    while (true) {
+        const LevelSwitch here = implementation_->difference(subject, step);
+        if (here.flip <= here.moved_flip) {
+            within = step;
+            found = here;
+            if (step == last) break;
         } else {
-            beyond = next;
-            if (!grows) {
-                std::swap(step, *beyond);
-                at = here;
-            }
+            beyond = step;
+            if (step == min_step) return here;
         }
+        if (within && beyond && *beyond - *within == 1) break;
+        step = std::clamp(step + predicted_stride(here), within ? *within + 1 : min_step,
+                          beyond ? *beyond - 1 : last);
     }
-    while (*beyond - step > 1) {
-        const int middle = (step + *beyond) / 2;
-        const LevelSwitch here = implementation_->difference(subject, middle);
-        if (is_within(here)) {
-            step = middle;
-            at = here;
-        } else {
-            beyond = middle;
-        }
-    }
-    return at;
+    return found;
 }
 
 const std::string& LevelPictures::backend_name() const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `relief-mesh lods IN OUT` adds levels of detail to a model, or writes them as separate files.
+// `relief-mesh lods` adds levels of detail to a model, or writes them as separate files.
 // Tests: tests/tools/reshaping_test.cpp.
 #include <fmt/format.h>
 
@@ -11,6 +11,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,8 +37,8 @@ constexpr int max_lod_levels = 16;
 enum class SwitchRule { flip, distance };
 
 struct LodsCommand {
-    std::filesystem::path input;
-    std::filesystem::path output;
+    FileWords words;
+    std::optional<ModelFormat> format;  ///< Of files in an output folder.
     std::optional<int> levels;  ///< Below the input; each has half the triangles of the one before.
     std::vector<int> triangles;  ///< By level.
     std::optional<double> pixel_error;
@@ -52,6 +53,14 @@ struct LodsCommand {
     [[nodiscard]] double error() const { return pixel_error.value_or(0.5); }
 };
 
+/// A level of detail of one mesh.
+struct MeshLevel {
+    std::size_t mesh = 0;  ///< Of IN.
+    std::size_t triangles = 0;
+    double pixels = 0.0;
+    double coverage = 1.0;
+};
+
 /// A level of detail of a model.
 struct LevelResult {
     std::size_t triangles = 0;
@@ -63,6 +72,8 @@ struct LevelResult {
     double coverage = 1.0;       ///< The same as a part of the screen.
     std::optional<double> flip;  ///< The largest difference of a mesh at its size.
     double moved_flip = 0.0;     ///< That of the moved input.
+    std::vector<MeshLevel> meshes;
+    std::filesystem::path file;  ///< The file that has the level.
     std::vector<PartReport> reports;
 };
 
@@ -122,8 +133,9 @@ struct LodsResult {
 /// Makes levels, one from the other.
 class LevelMaker {
   public:
-    LevelMaker(const LodsCommand& command, GltfDocument& document, Stages& stages,
-               LodsResult& done);
+    /// \param pictures  null, or those of another model, whose context is used again
+    LevelMaker(const LodsCommand& command, const Job& job, GltfDocument& document, Stages& stages,
+               std::unique_ptr<LevelPictures>& pictures, LodsResult& done);
 
     void make_all();
 
@@ -139,19 +151,25 @@ class LevelMaker {
     void forget_last();
 
     const LodsCommand& command_;
+    const Job& job_;
     GltfDocument& document_;
     Stages& stages_;
     LodsResult& done_;
     std::vector<LodMesh> meshes_;
     std::vector<Mesh> surfaces_;  ///< Of the new level, by mesh.
-    std::unique_ptr<LevelPictures> pictures_;
+    std::unique_ptr<LevelPictures>& pictures_;
     /// The meshes whose pictures are measured: the largest ones.
     std::vector<std::size_t> drawn_;
 };
 
-LevelMaker::LevelMaker(const LodsCommand& command, GltfDocument& document, Stages& stages,
-                       LodsResult& done)
-    : command_(command), document_(document), stages_(stages), done_(done) {
+LevelMaker::LevelMaker(const LodsCommand& command, const Job& job, GltfDocument& document,
+                       Stages& stages, std::unique_ptr<LevelPictures>& pictures, LodsResult& done)
+    : command_(command),
+      job_(job),
+      document_(document),
+      stages_(stages),
+      done_(done),
+      pictures_(pictures) {
     meshes_ = lod_meshes_of(document);
     if (meshes_.empty()) throw InvalidInput("has no triangles");
     for (const LodMesh& mesh : meshes_) {
@@ -178,8 +196,8 @@ void LevelMaker::load_pictures() {
     for (const std::size_t i : drawn_)
         meshes.push_back(meshes_[i].mesh);
     try {
-        pictures_ = std::make_unique<LevelPictures>(command_.error());
-        pictures_->set_input(document_, meshes, command_.input);
+        if (!pictures_) pictures_ = std::make_unique<LevelPictures>(command_.error());
+        pictures_->set_input(document_, meshes, job_.input);
         done_.backend = pictures_->backend_name();
     } catch (const Cancelled&) {
         throw;
@@ -221,6 +239,7 @@ void LevelMaker::decimate(LodMesh& mesh, double ratio, LevelResult& level) {
         });
     for (PartReport& part : changed.reports)
         level.reports.push_back(std::move(part));
+    level.meshes.push_back({mesh.mesh, changed.triangles_written});
     level.triangles += changed.triangles_written;
     level.vertices += changed.vertices_written;
     mesh.last = target;
@@ -257,7 +276,7 @@ void LevelMaker::choose_sizes(LevelResult& level) {
             std::vector<std::size_t> shown;
             for (const std::size_t i : drawn_)
                 shown.push_back(meshes_[i].last);
-            pictures_->set_level(document_, shown, command_.input);
+            pictures_->set_level(document_, shown, job_.input);
         }
         for (std::size_t i = 0; i < meshes_.size(); ++i) {
             LodMesh& mesh = meshes_[i];
@@ -281,6 +300,8 @@ void LevelMaker::choose_sizes(LevelResult& level) {
             mesh.levels.push_back({mesh.last, coverage});
             level.pixels = std::min(level.pixels, pixels);
             level.coverage = std::min(level.coverage, coverage);
+            level.meshes[i].pixels = pixels;
+            level.meshes[i].coverage = coverage;
             if (mesh.diameter > 0.0)
                 level.distance_pixels =
                     std::max(level.distance_pixels, largest * pixels / mesh.diameter);
@@ -299,7 +320,7 @@ std::filesystem::path level_file(const std::filesystem::path& output, std::size_
 
 void LevelMaker::write(std::size_t level) {
     if (!command_.separate) return;
-    done_.files.push_back(level_file(command_.output, level));
+    done_.files.push_back(level_file(job_.output, level));
     stages_.run("write", [&] {
         Report report;
         document_.write(done_.files.back(), report);
@@ -357,31 +378,33 @@ void LevelMaker::make_all() {
                                part.report);
         done_.levels.push_back(std::move(level));
         write(done_.levels.size());
+        done_.levels.back().file = command_.separate ? done_.files.back() : job_.output;
     }
     if (command_.separate) return;
     for (const LodMesh& mesh : meshes_) {
         if (!mesh.levels.empty())
             document_.set_levels_of_detail(mesh.mesh, mesh.levels, command_.names);
     }
-    done_.files.push_back(command_.output);
+    done_.files.push_back(job_.output);
     stages_.run("write", [&] {
         Report report;
-        document_.write(command_.output, report);
+        document_.write(job_.output, report);
         done_.findings.add("", report);
         return 0;
     });
 }
 
-LodsResult make_levels(const LodsCommand& command, Stages& stages) {
+LodsResult make_levels(const LodsCommand& command, const Job& job, Stages& stages,
+                       std::unique_ptr<LevelPictures>& pictures) {
     LodsResult done;
     Report report;
-    Model model = stages.run("read", [&] { return read_model(command.input, report); });
+    Model model = stages.run("read", [&] { return read_model(job.input, report); });
     if (const auto* contents = std::get_if<MeshFile>(&model))
-        model = about(command.input, [&] { return GltfDocument::from_mesh(*contents, report); });
+        model = about(job.input, [&] { return GltfDocument::from_mesh(*contents, report); });
     done.findings.add("", report);
     relief::detail::FileSet files;
-    about(command.input, [&] {
-        LevelMaker(command, std::get<GltfDocument>(model), stages, done).make_all();
+    about(job.input, [&] {
+        LevelMaker(command, job, std::get<GltfDocument>(model), stages, pictures, done).make_all();
         return 0;
     });
     files.commit();
@@ -402,19 +425,31 @@ std::string level_text(const LevelResult& level, std::size_t number) {
     return text;
 }
 
-Summary lods_summary(const LodsCommand& command, const LodsResult& done, const Stages& stages) {
+Json meshes_json(const LevelResult& level) {
+    Json meshes = Json::array();
+    for (const MeshLevel& mesh : level.meshes)
+        meshes.push_back({{"mesh", mesh.mesh},
+                          {"triangles", mesh.triangles},
+                          {"pixels", mesh.pixels},
+                          {"coverage", mesh.coverage}});
+    return meshes;
+}
+
+Summary lods_summary(const LodsCommand& command, const Job& job, const LodsResult& done,
+                     const Stages& stages) {
     Summary summary;
-    summary.add("read",
-                fmt::format("{}: {}, {}, {}", command.input.string(),
-                            format_name(readable_format(command.input)),
-                            counted(done.input.triangles, "triangle"),
-                            counted(done.input.vertices, "vertex", "vertices")),
-                {{"triangles_read", done.input.triangles}, {"vertices_read", done.input.vertices}});
+    summary.add(
+        "read",
+        fmt::format("{}: {}, {}, {}", job.input.string(), format_name(readable_format(job.input)),
+                    counted(done.input.triangles, "triangle"),
+                    counted(done.input.vertices, "vertex", "vertices")),
+        {{"triangles_read", done.input.triangles}, {"vertices_read", done.input.vertices}});
     std::vector<std::string> lines;
     Json levels = Json::array();
     for (const LevelResult& level : done.levels) {
         lines.push_back(level_text(level, lines.size() + 1));
-        Json json = {{"triangles", level.triangles},
+        Json json = {{"file", level.file.string()},
+                     {"triangles", level.triangles},
                      {"vertices", level.vertices},
                      {"distance",
                       {{"of_input", distance_json(level.distance.from_a)},
@@ -424,6 +459,7 @@ Summary lods_summary(const LodsCommand& command, const LodsResult& done, const S
                      {"coverage", level.coverage},
                      {"flip", or_null(level.flip)}};
         json["flip_of_moved_input"] = level.flip ? Json(level.moved_flip) : Json(nullptr);
+        json["meshes"] = meshes_json(level);
         levels.push_back(std::move(json));
     }
     if (lines.empty()) lines.emplace_back("none: IN cannot get smaller");
@@ -450,12 +486,43 @@ Summary lods_summary(const LodsCommand& command, const LodsResult& done, const S
     return summary;
 }
 
-void check_command(const LodsCommand& command) {
-    readable_format(command.input);
-    if (!is_document(writable_format(command.output))) {
-        throw UsageError(fmt::format("{}: cannot store levels of detail", command.output.string()),
-                         "write a .glb or .gltf");
+std::string line_of(const Job& job, const LodsResult& done, const Stages& stages) {
+    std::vector<std::string> levels;
+    for (const LevelResult& level : done.levels)
+        levels.push_back(fmt::format("{} below {:.4g} px", level.triangles, level.pixels));
+    return fmt::format("{}: {} -> {}{}, {}, {}", job.output.string(), done.input.triangles,
+                       levels.empty() ? "no level" : fmt::format("{}", fmt::join(levels, ", ")),
+                       done.not_measured.empty() ? "" : ", FLIP not measured for all",
+                       done.findings.count_text(), duration(stages.milliseconds()));
+}
+
+/// Returns the name of an output in the output folder: that of IN, as glTF.
+std::filesystem::path name_in_folder(const std::filesystem::path& input,
+                                     std::optional<ModelFormat> format) {
+    const ModelFormat input_format = readable_format(input);
+    const ModelFormat kept = is_document(input_format) ? input_format : ModelFormat::glb;
+    return input.filename().replace_extension(extension_for(format.value_or(kept)));
+}
+
+JobList jobs_of(const LodsCommand& command) {
+    JobList list = jobs_of(command.words, "model", [&](const std::filesystem::path& input) {
+        return name_in_folder(input, command.format);
+    });
+    if (command.format && !list.folder)
+        throw UsageError(fmt::format("--format: the name {} already has a format",
+                                     list.jobs.front().output.string()),
+                         "omit --format, or give a folder: -o out/");
+    for (const Job& job : list.jobs) {
+        readable_format(job.input);
+        if (!is_document(writable_format(job.output))) {
+            throw UsageError(fmt::format("{}: cannot store levels of detail", job.output.string()),
+                             "write a .glb or .gltf");
+        }
     }
+    return list;
+}
+
+void check_command(const LodsCommand& command) {
     if (command.levels && !command.triangles.empty())
         throw UsageError("--levels and --triangles contradict each other", "give one of them");
     if (command.names && command.separate)
@@ -480,37 +547,79 @@ Json options_json(const LodsCommand& command) {
     return options;
 }
 
-/// No level may replace the input, and the report none of the files.
-void check_files(const LodsCommand& command) {
-    std::vector<std::filesystem::path> files = {command.input, command.output};
-    for (std::size_t level = 0; level <= max_lod_levels && command.separate; ++level) {
-        files.push_back(level_file(command.output, level));
-        if (level > 0) check_distinct("--separate", files.back(), {command.input});
+/// No level may replace an input or a level of another model, and the report none of the files.
+void check_files(const LodsCommand& command, const JobList& list) {
+    std::vector<std::filesystem::path> files;
+    std::set<std::filesystem::path> used;
+    for (const Job& job : list.jobs) {
+        files.insert(files.end(), {job.input, job.output});
+        used.insert(identity_of(job.input));
     }
+    for (const Job& job : list.jobs) {
+        for (std::size_t level = 0; level <= max_lod_levels && command.separate; ++level) {
+            const std::filesystem::path file = level_file(job.output, level);
+            const bool is_input = level == 0 && identity_of(file) == identity_of(job.input);
+            if (!used.insert(identity_of(file)).second && !is_input) {
+                throw UsageError(fmt::format(
+                    "--separate {}: is also {}", file.string(),
+                    list.is_single() ? "the input or the output" : "another file of the command"));
+            }
+            files.push_back(file);
+        }
+    }
+    if (list.folder) make_folder(*list.folder);
     check(command.report, files);
+    require_folder_of(list.jobs.front().output);
+}
+
+/// Writes one model with its levels, and prints its summary.
+ExitCode lods_of_one(const CLI::App& app, const LodsCommand& command, const Job& job, Json head) {
+    Stages stages(command.general.quiet);
+    std::unique_ptr<LevelPictures> pictures;
+    const LodsResult done = make_levels(command, job, stages, pictures);
+    const Summary summary = lods_summary(command, job, done, stages);
+    if (!command.general.quiet) summary.print();
+    head["input"] = job.input.string();
+    head["output"] = job.output.string();
+    head.update(summary.json());
+    return finish(app, command.report, job.input, done.findings, head);
+}
+
+/// Writes several models, and prints a line for each.
+ExitCode lods_of_all(const CLI::App& app, const LodsCommand& command, const JobList& list,
+                     Json head) {
+    // All models are drawn in one context, on this thread.
+    std::unique_ptr<LevelPictures> pictures;
+    Batch batch;
+    batch.jobs = list.jobs;
+    batch.one_by_one = true;
+    batch.head = std::move(head);
+    batch.work = [&](std::size_t index) -> FileOutcome {
+        const Job& job = list.jobs[index];
+        Stages stages(true);
+        const LodsResult done = make_levels(command, job, stages, pictures);
+        return {line_of(job, done, stages), done.findings,
+                lods_summary(command, job, done, stages)};
+    };
+    return run_batch(app, batch, command.report, command.general);
 }
 
 ExitCode lods(const CLI::App& app, const LodsCommand& command) {
     check_command(command);
-    check_files(command);
-    require_folder_of(command.output);
+    const JobList list = jobs_of(command);
+    check_files(command, list);
     set_thread_limit(command.general.threads);
-    Stages stages(command.general.quiet);
-    const LodsResult done = make_levels(command, stages);
-    const Summary summary = lods_summary(command, done, stages);
-    if (!command.general.quiet) summary.print();
-    Json report = {{"tool", "relief-mesh " + command_name(app)},
-                   {"version", version()},
-                   {"input", command.input.string()},
-                   {"output", command.output.string()},
-                   {"options", options_json(command)}};
-    report.update(summary.json());
-    return finish(app, command.report, command.input, done.findings, report);
+    const Json head = {{"tool", "relief-mesh " + command_name(app)},
+                       {"version", version()},
+                       {"options", options_json(command)}};
+    return list.is_single() ? lods_of_one(app, command, list.jobs.front(), head)
+                            : lods_of_all(app, command, list, head);
 }
 
 void add_lods_options(CLI::App& app, LodsCommand& command) {
-    add_file(app, "IN", command.input, "Model to read: .glb .gltf .obj .ply .stl .off");
-    add_file(app, "OUT", command.output, "Model to write: .glb .gltf. May be IN itself.");
+    add_files(app, "FILE...", command.words.files,
+              "IN OUT: the model to read (.glb .gltf .obj .ply .stl .off) and the file to write "
+              "(.glb .gltf), which may be IN itself. With -o: any number of models to read.");
     const std::string levels = "Levels";
     add_value(app, "--levels", "N",
               "The number of levels below IN, 1 to 16. Each has half the triangles of the one "
@@ -546,6 +655,18 @@ void add_lods_options(CLI::App& app, LodsCommand& command) {
                "Default: flip.")
         .group(sizes);
     const std::string output = "Output";
+    add_value(
+        app, "-o,--output", "PATH",
+        "The output: a folder (with / at the end, or existing), or a file for one model. In "
+        "a folder, each model keeps its name. If a model fails, the others are still "
+        "processed.",
+        [&command](const std::string&, const std::string& text) { command.words.output = text; })
+        .group(output);
+    add_choice(app, "--format", command.format,
+               Choices<ModelFormat>{{"glb", ModelFormat::glb}, {"gltf", ModelFormat::gltf}},
+               "The format of the files in an output folder. Default: the format of the input, or "
+               "glb for inputs that are not glTF.")
+        .group(output);
     add_switch(app, "--names", command.names,
                "Append _LOD0, _LOD1, ... to the names of the nodes. Default: they keep their name.")
         .group(output);
@@ -558,7 +679,8 @@ void add_lods_options(CLI::App& app, LodsCommand& command) {
     set_examples(app, {"relief-mesh lods data/vase.obj out/vase-lods.glb",
                        "relief-mesh lods data/vase.obj out/vase-lods.glb --triangles 3000,1000,300 "
                        "--error 1px --names",
-                       "relief-mesh lods data/vase.obj out/vase.glb --error 0.5px --separate"});
+                       "relief-mesh lods data/vase.obj out/vase.glb --error 0.5px --separate",
+                       "relief-mesh lods data/*.obj -o out/lods/ --report out/lods.json"});
 }
 
 }  // namespace

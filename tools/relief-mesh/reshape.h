@@ -53,7 +53,7 @@ class LevelPictures {
     LevelPictures(const LevelPictures&) = delete;
     LevelPictures& operator=(const LevelPictures&) = delete;
 
-    /// Sets the input: meshes as they are in the document now.
+    /// Sets the input: meshes as they are in the document now. Replaces an earlier input.
     /// \param file  the document's file, for messages
     void set_input(const GltfDocument& document, std::span<const std::size_t> meshes,
                    const std::filesystem::path& file);
@@ -63,10 +63,11 @@ class LevelPictures {
 
     /// Finds the largest size, up to the screen's height, at which the level of a mesh differs from
     /// the input, in each of three views, no more than the input that is moved by the error. Sizes
-    /// are powers of 2^(1/4), at least 4 pixels.
+    /// are powers of 2^(1/4), at least 4 pixels. Above 362 pixels, pictures of this size are
+    /// compared, with an error that is the same part of the mesh.
     ///
     /// \param mesh   index in the lists of set_input() and set_level()
-    /// \param start  the size at which the search begins, in pixels
+    /// \param start  the size at which the search begins, in pixels; 64 if it is larger
     /// \param most   the largest size
     /// \return none if the mesh has no extent or if its size exceeds the range of a camera
     /// \throws GpuError, InvalidInput if it cannot be drawn
