@@ -404,6 +404,7 @@ py::dict to_dict(const DistanceStats& stats) {
     result["max"] = stats.max;
     result["mean_degrees"] = stats.mean_degrees;
     result["max_degrees"] = stats.max_degrees;
+    result["samples"] = stats.samples;
     result["omitted"] = stats.omitted;
     return result;
 }
