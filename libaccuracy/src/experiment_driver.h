@@ -174,8 +174,8 @@ std::vector<PlannedExperiment> bake_plan(const PlanOptions& options);
 /// charts over the number of triangles; and a large mesh for time and memory.
 std::vector<PlannedExperiment> decimation_plan(const PlanOptions& options);
 
-/// Unwrapping of a smooth, a noisy and a sharp-edged surface: the stretch of the coordinates and the
-/// unused texels, with a chart over the padding; and a large mesh for time and memory.
+/// Unwrapping of a smooth, a noisy and a sharp-edged surface: the stretch of the coordinates and
+/// the unused texels, with a chart over the padding; and a large mesh for time and memory.
 std::vector<PlannedExperiment> unwrapping_plan(const PlanOptions& options);
 
 /// Interpolation, highlights, Fresnel factors, unit normals, cube maps and antialiasing. Without
