@@ -170,7 +170,8 @@ TEST(AccuracyDocument, HoldsTheStoredFiguresOfTheExperiments) {
                                                   {"cost", {{"stored_bytes", values[6]}}}});
         }
         const std::size_t methods = compare_with_the_page(page, experiment);
-        EXPECT_TRUE(methods == 0 || methods >= 4) << id;
+        // Long tables have the efficient methods only, whose number depends on measured times.
+        EXPECT_TRUE(methods == 0 || methods >= 3) << id;
         compared += methods > 0 ? 1 : 0;
     }
     EXPECT_EQ(compared, 9U) << "an experiment of the page was not found";
