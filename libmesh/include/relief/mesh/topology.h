@@ -33,9 +33,9 @@ struct AttributeWeights {
     double target = 1.0;  ///< Of displacements by morph targets, which are lengths.
 };
 
-/// What a result is to resemble, which selects the next collapse: the smallest error times area, so
-/// that pictures of all surfaces differ little; or the smallest squared error times area, so that
-/// distances from the input are small.
+/// The property of the input that a result keeps, which selects the next collapse: the smallest
+/// error times area, so that pictures of all surfaces differ little; or the smallest squared error
+/// times area, so that distances from the input are small.
 enum class DecimateGoal { picture, distance };
 
 template <>
