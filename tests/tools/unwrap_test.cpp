@@ -138,7 +138,8 @@ TEST(UnwrapCommand, NumbersTilesUpwards) {
     EXPECT_TRUE(right > 9.5F && right < 10.0F) << right;
     const ProgramResult checked =
         workplace.run("relief-mesh check out/a.obj --map-size 128 --json");
-    for (const json& map : json::parse(checked.out)["files"][0]["texcoords"]) {
+    const json report = json::parse(checked.out);
+    for (const json& map : report["files"][0]["texcoords"]) {
         EXPECT_EQ(map["outside"], 0);
         EXPECT_EQ(map["overlapping"], 0);
         for (const json& tile : map["tiles"])
