@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Whether the tests run under a sanitizer. They take 5 to 50 times as long there, so cases that
-/// try many inputs of one kind try fewer.
+/// States whether the tests run under a sanitizer. They take 5 to 50 times as long there, so cases
+/// that try many inputs of one kind try fewer.
 #pragma once
 
 namespace relief::test {

@@ -35,8 +35,9 @@ constexpr int hint_slack = 8;
 constexpr std::size_t max_freely_rotated = 64;
 /// Above this number of charts, the first attempt should succeed.
 constexpr std::size_t max_varied = 1000;
-/// Of at least so many charts, a quarter estimates the scale in a quarter of the map, unless the
-/// longest chart exceeds this share of its height, or the quarter has fewer rows of cells.
+/// From this number of charts on, a quarter of them estimates the scale in a quarter of the map,
+/// unless the longest chart exceeds this share of its height, or the quarter has fewer rows of
+/// cells.
 constexpr std::size_t min_sampled = 5000;
 constexpr std::size_t sample_share = 4;
 constexpr double max_sampled_length = 0.5;

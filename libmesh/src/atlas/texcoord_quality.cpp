@@ -304,7 +304,7 @@ class Measurement {
         for (const std::uint32_t chart : charts_.chart)
             numbered_.chart.push_back(chart == no_face ? no_face : number[chart]);
     }
-    /// Whether the chart of a face shares the texels of an earlier one.
+    /// Returns whether the chart of a face shares the texels of an earlier one.
     [[nodiscard]] bool is_copy(std::uint32_t face) const {
         const std::uint32_t chart = charts_.chart[face];
         return chart != no_face && first_chart_[chart] != chart;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What relief uses beyond C++20: vectors of numbers and integers of 128 bits. GCC and Clang have
-/// both for every system; on Windows these are MinGW-w64 and clang-cl.
+/// Extensions of C++20 that relief uses: vectors of numbers and integers of 128 bits. GCC and Clang
+/// have both for every system; on Windows these are MinGW-w64 and clang-cl.
 #pragma once
 
 #if !defined(__GNUC__) && !defined(__clang__)

@@ -344,7 +344,7 @@ std::vector<BorderSegment> placed_border(const FlatChart& chart, const Packing& 
     return border;
 }
 
-// Of two polygons that don't intersect, a corner of one is nearest to the other.
+// If two polygons don't intersect, a corner of one is nearest to the other.
 double distance(const std::vector<BorderSegment>& a, const std::vector<BorderSegment>& b) {
     double least = std::numeric_limits<double>::infinity();
     for (const BorderSegment& first : a) {

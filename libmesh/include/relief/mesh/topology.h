@@ -89,11 +89,12 @@ struct DecimateOptions {
 /// simplified along themselves and never torn or crossed, and their junctions are kept. Closed
 /// meshes stay closed, no triangle is inverted in the texture or in space (at each corner of a
 /// triangle that changes, one of the input's triangles is within 90 degrees), and separate
-/// components neither merge nor vanish. The target number of triangles is met to within one unless
-/// that would violate these rules. The same input gives the same bits for any order of triangles
-/// and vertices and any first corner of triangles, except that computed tangents depend on the
-/// latter (tangents.h). Collapsed triangles have no influence. The time is linear for all shapes,
-/// except for sorting.
+/// components neither merge nor vanish, and keep their shapes: no vertex moves away from its
+/// component by more than a fifth of its size, and no error exceeds 3 % of it. The target number of
+/// triangles is met to within one unless that would violate these rules. The same input gives the
+/// same bits for any order of triangles and vertices and any first corner of triangles, except that
+/// computed tangents depend on the latter (tangents.h). Collapsed triangles have no influence. The
+/// time is linear for all shapes, except for sorting.
 ///
 /// Source: [Garland and Heckbert 1997], [Hoppe 1999].
 FramedMesh decimated(const Mesh& mesh, const DecimateOptions& options,
