@@ -17,7 +17,7 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 ROOT = pathlib.Path(__file__).resolve().parent
-TOOLS = ("relief-accuracy", "relief-bake", "relief-mesh", "relief-view")
+TOOLS = ("relief", "relief-accuracy", "relief-bake", "relief-mesh", "relief-view")
 TARGETS = ("relief_python", "relief_image_module", "relief-image-decoder", *TOOLS)
 
 

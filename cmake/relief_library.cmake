@@ -20,7 +20,7 @@ endif()
 # Each component stands after those that it needs. The packages of CMake (NAME or NAME=VERSION), third parties of
 # relief-third-parties.cmake, packages of pkg-config, and the libraries that it does not know, are for programs that
 # link an installed static component.
-set(RELIEF_ALL mesh topology atlas files bake c shade reference accuracy)
+set(RELIEF_ALL mesh topology atlas files bake c shade reference accuracy make)
 if(NOT RELIEF_FMT_HEADERS)
     list(APPEND RELIEF_PACKAGES_mesh fmt)
     list(APPEND RELIEF_PKG_CONFIG_mesh fmt)
@@ -46,6 +46,7 @@ set(RELIEF_LIBRARIES_c -lstdc++ -lm)
 set(RELIEF_NEEDED_BY_shade files)
 set(RELIEF_NEEDED_BY_reference shade bake)
 set(RELIEF_NEEDED_BY_accuracy reference topology atlas)
+set(RELIEF_NEEDED_BY_make topology atlas files bake)
 
 set(RELIEF_COMPONENTS "${RELIEF_ALL}" CACHE STRING "Components to build; those that they need are added")
 set(RELIEF_BUILT ${RELIEF_COMPONENTS})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The commands relief-mesh, relief-bake, relief-view and relief-accuracy of the Python package.
+"""The commands relief, relief-mesh, relief-bake, relief-view and relief-accuracy of the Python package.
 
 They replace this process by the tool in the package. The module relief is not imported, so that they start fast.
 """
@@ -23,6 +23,11 @@ def accuracy() -> NoReturn:
 def bake() -> NoReturn:
     """Become relief-bake."""
     _become("relief-bake")
+
+
+def driver() -> NoReturn:
+    """Become relief."""
+    _become("relief")
 
 
 def mesh() -> NoReturn:

@@ -244,7 +244,8 @@ TEST_F(Installed, ComponentsNeedOnlyTheirThirdParties) {
 TEST_LABELS(slow);
 TEST_F(Installed, ToolsAndProgramsFindTheModuleInTheMovedTree) {
     const std::string tools = tree().string() + "/bin/";
-    for (const std::string tool : {"relief-mesh", "relief-bake", "relief-view", "relief-accuracy"})
+    for (const std::string tool :
+         {"relief", "relief-mesh", "relief-bake", "relief-view", "relief-accuracy"})
         EXPECT_THAT(run_clean(tools + tool + " --version", folder->path()).out,
                     testing::MatchesRegex(tool + " " RELIEF_VERSION
                                                  R"(( \(commit [0-9a-f]+(-modified)?\))?)"
@@ -280,8 +281,9 @@ TEST_F(Installed, PkgConfigNamesTheSameProgram) {
 
 TEST_LABELS(slow);
 TEST_F(Installed, HeadersAndShadersAreInTheTree) {
-    for (const char* header : {"relief/mesh/frames.h", "relief/shade/renderer.h",
-                               "relief/accuracy/asset.h", "relief/version.h", "relief/export.h"})
+    for (const char* header :
+         {"relief/mesh/frames.h", "relief/shade/renderer.h", "relief/accuracy/asset.h",
+          "relief/make/asset.h", "relief/version.h", "relief/export.h"})
         EXPECT_TRUE(std::filesystem::exists(tree() / "include" / header)) << header;
     EXPECT_TRUE(std::filesystem::exists(tree() / "share/relief/shaders/phong.glsl"));
 }
@@ -303,12 +305,13 @@ TEST(Packages, HaveTheirFilesOnly) {
         }
     }
     for (const char* file :
-         {"bin/relief-accuracy", "bin/relief-bake", "bin/relief-mesh", "bin/relief-view",
-          "share/bash-completion/completions/relief-mesh", "share/man/man1/relief-mesh-decimate.1",
-          "share/relief/data/vase.obj", "share/relief/shaders/phong.glsl",
-          "share/applications/relief-view.desktop", "share/doc/relief/LICENSE",
-          "share/doc/relief/docs/hard-cases.md", "share/doc/relief/docs/images/bake.png",
-          "share/doc/relief/relief.spdx.json", "share/doc/relief/third-party-notices.txt",
+         {"bin/relief", "bin/relief-accuracy", "bin/relief-bake", "bin/relief-mesh",
+          "bin/relief-view", "share/bash-completion/completions/relief-mesh",
+          "share/man/man1/relief-mesh-decimate.1", "share/relief/data/vase.obj",
+          "share/relief/shaders/phong.glsl", "share/applications/relief-view.desktop",
+          "share/doc/relief/LICENSE", "share/doc/relief/docs/hard-cases.md",
+          "share/doc/relief/docs/images/bake.png", "share/doc/relief/relief.spdx.json",
+          "share/doc/relief/third-party-notices.txt",
           "share/icons/hicolor/scalable/apps/relief-view.svg",
           "share/metainfo/relief-view.metainfo.xml", "share/mime/packages/relief.xml",
           "share/thumbnailers/relief-view.thumbnailer"})
@@ -420,6 +423,9 @@ TEST(SharedComponents, LinkWithTheExportsOfEachOther) {
         {"accuracy", "libaccuracy",
          "-lrelief_reference -lrelief_shade -lrelief_bake -lrelief_files -lrelief_topology "
          "-lrelief_atlas -lrelief_mesh -l" RELIEF_EMBREE},
+        {"make", "libmake",
+         "-lrelief_bake -lrelief_files -lrelief_topology -lrelief_atlas -lrelief_mesh "
+         "-l" RELIEF_EMBREE},
     };
     const TemporaryDirectory folder;
     for (const Component& component : components) {

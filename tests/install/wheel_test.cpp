@@ -121,7 +121,7 @@ TEST_F(PythonWheel, SourceArchiveHasAllFilesOfTheBuild) {
         "-DRELIEF_PYTHON=ON");
     run("cmake --build sources/build/wheel --target relief_python relief_image_module "
         "relief-image-decoder "
-        "relief-accuracy relief-bake relief-mesh relief-view -- -n");
+        "relief relief-accuracy relief-bake relief-mesh relief-view -- -n");
     for (const char* file :
          {"setup.py", "pyproject.toml", "PKG-INFO", "LICENSE", "python/relief/py.typed"})
         EXPECT_TRUE(std::filesystem::exists(*folder / "sources" / file)) << file;

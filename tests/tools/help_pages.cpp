@@ -22,7 +22,8 @@ std::vector<std::string> section_of(const std::string& page, const std::string& 
 }  // namespace
 
 std::vector<std::string> commands_with_help(const Workplace& workplace) {
-    std::vector<std::string> commands;
+    // The other commands of relief are these tools.
+    std::vector<std::string> commands = {"relief", "relief make"};
     for (const std::string tool :
          {"relief-accuracy", "relief-bake", "relief-mesh", "relief-view"}) {
         commands.push_back(tool);
@@ -38,7 +39,7 @@ std::vector<std::string> commands_with_help(const Workplace& workplace) {
 std::vector<std::string> examples_of(const std::string& page) {
     std::vector<std::string> examples;
     for (const std::string& line : section_of(page, "Examples:")) {
-        if (line.starts_with("  relief-")) examples.push_back(line.substr(2));
+        if (line.starts_with("  relief")) examples.push_back(line.substr(2));
     }
     return examples;
 }

@@ -16,6 +16,7 @@
 #include <tuple>
 #include <utility>
 
+#include "common/html.h"
 #include "relief/accuracy/experiment.h"
 #include "report_page.h"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the page of a report from its JSON: page/page.html with the sections of subjects and
-// experiments. The base64 encoding is that of [RFC 4648]. Also holds the command
-// `relief-accuracy report REPORT`.
+// experiments. Also holds the command `relief-accuracy report REPORT`.
 #include "report_page.h"
 
 #include <fmt/format.h>
@@ -20,6 +19,7 @@
 #include "accuracy_report.h"
 #include "commands.h"
 #include "common/file_jobs.h"
+#include "common/html.h"
 #include "common/options.h"
 #include "common/text.h"
 #include "files.h"
@@ -31,20 +31,6 @@ namespace relief::tools {
 using nlohmann::ordered_json;
 
 // Texts.
-
-std::string html_escaped(std::string_view text) {
-    static const std::map<char, std::string_view> entities = {
-        {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
-    std::string escaped;
-    for (const char letter : text) {
-        const auto entity = entities.find(letter);
-        if (entity == entities.end())
-            escaped += letter;
-        else
-            escaped += entity->second;
-    }
-    return escaped;
-}
 
 std::string number_text(std::optional<double> value) {
     if (!value || !std::isfinite(*value)) return "–";
@@ -303,21 +289,6 @@ std::string charts_html(const ordered_json& experiment) {
             escaped_at(chart, "title"), plot_html(curves_plot(chart, tips)), chart_table(chart));
     }
     return html;
-}
-
-std::string base64(std::string_view bytes) {
-    constexpr std::string_view letters =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::size_t given = std::min<std::size_t>(3, bytes.size() - i);
-        std::uint32_t group = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            group = group << 8 | (k < given ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-        for (std::size_t k = 0; k < 4; ++k)
-            text += k <= given ? letters[group >> (18 - 6 * k) & 63] : '=';
-    }
-    return text;
 }
 
 /// Returns an <img> with the picture as data and a caption, or a note if no file was written.

@@ -15,9 +15,6 @@
 
 namespace relief::tools {
 
-/// Returns text for elements and quoted attributes, with entities for & < > " '.
-std::string html_escaped(std::string_view text);
-
 /// Returns a number with three digits, "0.0123", "45.6", "12300"; as a whole number, "8192"; or
 /// with an exponent, "1.23e-05", below 0.001 and from a million. Missing and non-finite values are
 /// "–".

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <regex>
 
+#include "common/html.h"
 #include "relief/mesh/report.h"
 #include "support/invariants.h"
 #include "tools/accuracy_page/sample_report.h"

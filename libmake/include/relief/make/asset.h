@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Makes an asset from a dense mesh: few triangles, texture coordinates, tangents, and maps with
+/// the detail of the mesh. Each stage is a call of another component; make_asset() runs them in
+/// order. Part of the library relief::make. Tests: tests/make/asset_test.cpp.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "relief/export.h"
+#include "relief/mesh/bake.h"
+#include "relief/mesh/execution.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/material.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
+#include "relief/mesh/topology.h"
+#include "relief/mesh/unwrap.h"
+
+namespace RELIEF_API relief {
+namespace make {
+
+/// A dense mesh with its materials.
+struct AssetSource {
+    std::string name;        ///< Of the asset's mesh and material.
+    Mesh mesh;               ///< Valid (mesh.h). Without normals, they are computed.
+    glm::dvec3 origin{0.0};  ///< Of the positions (mesh_file.h).
+    /// Indexed by the material ranges of the mesh.
+    std::vector<HighMaterial> materials;
+    /// The material of triangles without a material.
+    std::optional<HighMaterial> otherwise;
+    AlphaMode alpha_mode = AlphaMode::opaque;  ///< If a material has an opacity.
+    float alpha_cutoff = 0.5F;                 ///< For AlphaMode::mask.
+};
+
+struct AssetOptions {
+    std::size_t triangles = 5000;  ///< The target number of triangles, at least 1.
+    glm::ivec2 size{2048};         ///< Of the maps in texels, 16 to 16384 each.
+    /// The distance of charts in texels; the maps are padded by as many.
+    int padding = 8;
+    /// Edges with a larger angle between their triangles are hard, and borders of charts where that
+    /// is possible; radians, 0 to pi. Absent: all edges are smooth. It also applies to a source
+    /// without normals.
+    std::optional<double> crease_angle = 1.0471975511965976;  // 60 degrees
+    /// Keeps the texture coordinates of the source instead of computing new ones.
+    bool keep_texcoords = false;
+    bool occlusion = true;    ///< Bakes an occlusion map of half the size.
+    int occlusion_rays = 32;  ///< Per texel of the occlusion map.
+    int samples = 1;          ///< Per texel (BakeMapOptions::samples).
+    std::size_t levels = 0;   ///< Levels of detail; each has half the triangles of the one before.
+    ExecutionOptions execution;
+    /// Runs a stage, for measurements and progress; absent: it is only called. Exceptions must
+    /// pass.
+    std::function<void(std::string_view stage, const std::function<void()>& work)> run_stage;
+};
+
+/// The names of the stages in their order: "repair", "decimate", "unwrap", "frames", "bake".
+/// \param options  with keep_texcoords there is no "unwrap"
+std::vector<std::string> stages_of(const AssetOptions& options);
+
+/// The findings of a stage.
+struct StageReport {
+    std::string stage;
+    Report report;
+};
+
+/// A level of detail.
+struct AssetLevel {
+    std::size_t triangles = 0;
+    double distance = 0.0;  ///< The largest distance from the finest level, in units of the mesh.
+    /// The diameter of the asset on the screen, in pixels, below which the level is used: its
+    /// distance is half a pixel then.
+    double pixels = 0.0;
+    double coverage = 1.0;  ///< The same as a part of a screen of 1920 x 1080.
+};
+
+/// An asset in memory.
+struct Asset {
+    std::string name;
+    Mesh mesh;  ///< With normals, texture coordinates and tangents (MikkTSpace); one material.
+    glm::dvec3 origin{0.0};
+    std::size_t source_triangles = 0;  ///< After repair.
+    std::optional<AtlasStats> atlas;   ///< Absent with AssetOptions::keep_texcoords.
+    BakeResult bake;
+    BakeAgreement agreement;
+    Image normal_map;  ///< 8 bits, green up, zero at 127.5, as in glTF.
+    std::optional<Image> occlusion_map;
+    /// sRGB, with opacity in alpha if `alpha_mode` is not opaque. Absent: the source has one color.
+    std::optional<Image> color_map;
+    glm::vec3 color{0.8F};  ///< Linear; of an asset without a color map.
+    AlphaMode alpha_mode = AlphaMode::opaque;
+    float alpha_cutoff = 0.5F;
+    std::vector<StageReport> reports;
+};
+
+/// Runs the stages from the source to the maps.
+///
+/// - *repair* removes triangles without area or with a position that is not finite.
+/// - *decimate* reduces the surface to the target number of triangles (topology.h). A source that
+///   has no more keeps them, which is reported.
+/// - *unwrap* divides at hard edges and packs the charts into the map (unwrap.h).
+/// - *frames* computes normals, hard at the crease angle, and MikkTSpace tangents (frames.h).
+/// - *bake* casts rays onto the source (bake.h).
+///
+/// \return the same bytes for any number of threads
+/// \throws InvalidInput if an option is out of range, the mesh is not valid, no usable triangle is
+///         left, texture coordinates are to be kept but absent, or no ray hits the source;
+///         Cancelled
+Asset make_asset(const AssetSource& source, const AssetOptions& options);
+
+/// Writes an asset with its maps inside as .glb or .gltf, with levels of detail (MSFT_lod).
+///
+/// \param report  counts values that glTF forbids and that were repaired
+/// \return the levels, from fine to coarse; fewer than requested if the mesh cannot get smaller,
+///         which is reported
+/// \throws FileError; there is no partial file, and an old one is unchanged. InvalidInput
+std::vector<AssetLevel> write_asset(const std::filesystem::path& file, const Asset& asset,
+                                    std::size_t levels, Report& report = IgnoredReport());
+
+/// Reads a written asset back and checks it: meshes (model.h, with the requirements of baking),
+/// tangents, which must be MikkTSpace's, and the size and kind of each map.
+///
+/// \return problems; empty if the file is what was made
+/// \throws FileError if the file cannot be read
+Report verify_asset(const std::filesystem::path& file, const Asset& asset);
+
+}  // namespace make
+}  // namespace relief

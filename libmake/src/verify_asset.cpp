@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads a written asset back and checks it. Tests: tests/make/asset_test.cpp.
+#include <fmt/format.h>
+
+#include <array>
+#include <span>
+
+#include "relief/make/asset.h"
+#include "relief/mesh/gltf_document.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/model.h"
+
+namespace relief::make {
+namespace {
+
+constexpr const char* outcome = "is not what was made";
+
+void check_meshes(const CheckedModel& checked, Report& problems) {
+    for (const CheckedPart& part : checked.parts) {
+        problems.merge(part.problems);
+        const auto index = static_cast<std::size_t>(&part - checked.parts.data());
+        const bool has_frames = part.tangents && !part.tangents->identified.agreements.empty();
+        if (!has_frames) {
+            problems.add("mesh without tangents", "primitive", index, outcome);
+        } else if (part.tangents->identified.method != TangentMethod::mikktspace &&
+                   std::ranges::count(part.tangents->identified.equivalent_methods,
+                                      TangentMethod::mikktspace) == 0) {
+            problems.add("tangents that are not MikkTSpace's", "primitive", index, outcome);
+        }
+    }
+}
+
+void check_map(const GltfView& view, TextureSlot slot, const Image& expected, Report& problems) {
+    const Texture* texture = find_texture(view.materials.front(), slot);
+    const auto* bytes =
+        texture == nullptr
+            ? nullptr
+            : std::get_if<std::vector<std::byte>>(&view.images[texture->image].source);
+    const auto index = static_cast<std::size_t>(slot);
+    if (bytes == nullptr || bytes->empty()) {
+        problems.add("missing map", "texture", index, outcome);
+        return;
+    }
+    const Image stored = read_image(*bytes, "map", slot_info(slot).use);
+    if (stored.width != expected.width || stored.height != expected.height ||
+        stored.samples != expected.samples)
+        problems.add("map with other texels", "texture", index, outcome);
+}
+
+}  // namespace
+
+Report verify_asset(const std::filesystem::path& file, const Asset& asset) {
+    Report reading;
+    const Model model = GltfDocument::read(file, reading);
+    Report problems;
+    problems.merge(reading);
+    check_meshes(check_model(model, reading, true), problems);
+    const auto& document = std::get<GltfDocument>(model);
+    const GltfView view = document.view();
+    if (view.materials.size() != 1) {
+        problems.add("another number of materials than 1", "material", view.materials.size(),
+                     outcome);
+        return problems;
+    }
+    if (document.mesh(document.triangle_primitives().front()).triangles.size() !=
+        asset.mesh.triangles.size())
+        problems.add("another number of triangles", "mesh", 0, outcome);
+    check_map(view, TextureSlot::normal, asset.normal_map, problems);
+    if (asset.occlusion_map)
+        check_map(view, TextureSlot::occlusion, *asset.occlusion_map, problems);
+    if (asset.color_map) check_map(view, TextureSlot::base_color, *asset.color_map, problems);
+    return problems;
+}
+
+}  // namespace relief::make

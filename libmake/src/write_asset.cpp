@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes an asset as glTF, with its maps and levels of detail. Tests: tests/make/asset_test.cpp.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "file_replacement.h"
+#include "relief/make/asset.h"
+#include "relief/mesh/gltf_document.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/map_description.h"
+#include "relief/mesh/model.h"
+#include "relief/mesh/normal_map.h"
+#include "relief/mesh/topology.h"
+
+namespace relief::make {
+namespace {
+
+GltfDocument document_of(const Asset& asset, Report& report) {
+    MeshFile contents;
+    contents.mesh = asset.mesh;
+    contents.mesh.name = asset.name;
+    contents.origin = asset.origin;
+    MtlMaterial material;
+    material.name = asset.name;
+    material.diffuse = asset.color_map ? glm::vec3(1.0F) : asset.color;
+    contents.materials.push_back(material);
+    const auto count = static_cast<std::uint32_t>(asset.mesh.triangles.size());
+    contents.mesh.material_ranges = {{0, count, 0U}};
+    return GltfDocument::from_mesh(contents, report);
+}
+
+/// Stores the maps in the material. Their files, which have the names of the maps, exist only until
+/// the document has read them.
+void store_maps(GltfDocument& document, const std::filesystem::path& file, const Asset& asset,
+                Report& report) {
+    const relief::detail::FileSet temporary;  // It is never committed.
+    const auto store = [&](TextureSlot slot, const char* suffix, const Image& image,
+                           const std::map<std::string, std::string>& metadata) {
+        const std::filesystem::path map =
+            file.parent_path() / (file.stem().string() + suffix + ".png");
+        write_image(map, image, metadata);
+        document.set_texture(0, slot, map, GltfImageStorage::embedded, report);
+    };
+    NormalMapFormat format;
+    format.bits = 8;
+    store(TextureSlot::normal, "_normal", asset.normal_map, normal_map_metadata(format));
+    if (asset.occlusion_map) {
+        store(TextureSlot::occlusion, "_occlusion", *asset.occlusion_map,
+              write_description({.kind = MapKind::occlusion, .color_space = ColorSpace::data}, 8));
+    }
+    if (!asset.color_map) return;
+    MapDescription colors{.kind = MapKind::color, .color_space = ColorSpace::srgb};
+    if (asset.color_map->channels == 4) colors.alpha = AlphaContent::opacity;
+    store(TextureSlot::base_color, "_color", *asset.color_map, write_description(colors, 8));
+    if (asset.alpha_mode != AlphaMode::opaque)
+        document.set_alpha_mode(0, asset.alpha_mode, asset.alpha_cutoff);
+}
+
+/// The screen on which the pixels of levels are counted, and the error of a level at its switch.
+constexpr double screen_width = 1920.0;
+constexpr double screen_height = 1080.0;
+constexpr double pixel_error = 0.5;
+
+/// Returns the positions and triangles.
+Mesh surface_of(const Mesh& mesh) {
+    Mesh surface;
+    surface.positions = mesh.positions;
+    surface.triangles = mesh.triangles;
+    return surface;
+}
+
+double diameter_of(const Mesh& mesh) {
+    const Bounds bounds = bounds_of(mesh);
+    return bounds.empty() ? 0.0 : glm::length(glm::dvec3(bounds.max) - glm::dvec3(bounds.min));
+}
+
+void set_switch(AssetLevel& level, double diameter, double largest_pixels) {
+    level.pixels = level.distance > 0.0 ? pixel_error * diameter / level.distance : screen_height;
+    level.pixels = std::min(level.pixels, largest_pixels);
+    const double area = std::numbers::pi / 4.0 * level.pixels * level.pixels;
+    level.coverage = std::min(1.0, area / (screen_width * screen_height));
+}
+
+/// Adds levels below the only mesh of a document. They share its maps: seams are kept.
+std::vector<AssetLevel> add_levels(GltfDocument& document, const Asset& asset, std::size_t count,
+                                   Report& report) {
+    // A level that has more than this part of the triangles of the one before is useless.
+    constexpr double max_part = 0.75;
+    std::vector<AssetLevel> levels;
+    std::vector<GltfLevel> of_document;
+    std::size_t last = 0;
+    std::size_t triangles = asset.mesh.triangles.size();
+    const Mesh finest = surface_of(asset.mesh);
+    const double diameter = diameter_of(finest);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t target = document.copy_mesh(last);
+        AssetLevel level;
+        Mesh surface;
+        const ChangedModel changed = change_triangles(
+            document, std::array{target}, NormalMode::keep,
+            [&](const TriangleInput& before, Report& more) {
+                DecimateOptions limits;
+                limits.triangles = std::max<std::size_t>(1, triangles / 2);
+                limits.fit_positions = true;
+                FramedMesh after = decimated(before.mesh, limits, more, before.deformation);
+                surface = surface_of(after.mesh);
+                return after;
+            });
+        level.triangles = changed.triangles_written;
+        if (static_cast<double>(level.triangles) > max_part * static_cast<double>(triangles)) {
+            document.remove_last_mesh();
+            report.add("level of detail that cannot get smaller", "level", i + 1, "is left out");
+            break;
+        }
+        const SurfaceDistance distance = surface_distance(finest, surface);
+        level.distance = std::max(distance.from_a.max, distance.from_b.max);
+        set_switch(level, diameter, levels.empty() ? screen_height : levels.back().pixels);
+        levels.push_back(level);
+        of_document.push_back({target, level.coverage});
+        last = target;
+        triangles = level.triangles;
+    }
+    if (!of_document.empty()) document.set_levels_of_detail(0, of_document, false);
+    return levels;
+}
+
+}  // namespace
+
+std::vector<AssetLevel> write_asset(const std::filesystem::path& file, const Asset& asset,
+                                    std::size_t levels, Report& report) {
+    GltfDocument document = document_of(asset, report);
+    store_maps(document, file, asset, report);
+    std::vector<AssetLevel> added = add_levels(document, asset, levels, report);
+    document.write(file, report);
+    return added;
+}
+
+}  // namespace relief::make

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// The HTML page of `relief make`.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "make_pictures.h"
+#include "support/labels.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using test::ProgramResult;
+using test::Workplace;
+using testing::HasSubstr;
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+        ++count;
+    return count;
+}
+
+TEST(MakePage, HasPicturesTablesAndTheCommandAndLoadsNothing) {
+    const Workplace workplace;
+    const ProgramResult result = workplace.run(
+        "relief make data/urn-high.ply out/urn.glb --triangles 400 --size 64 --padding 2 "
+        "--occlusion-rays 2 --lods 1 --report out/urn.html");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(workplace.outputs(), "urn.glb urn.html");
+    const std::string page = workplace.read("out/urn.html");
+    EXPECT_THAT(page,
+                HasSubstr("urn-high.ply: 26800 triangles became 400 triangles, with maps of 64 "
+                          "x 64 texels."));
+    EXPECT_GE(count_of(page,
+                       "relief make data/urn-high.ply -o out/urn.glb --triangles 400 "
+                       "--size 64x64 --padding 2 --crease 60"),
+              1U);
+    for (const char* text : {"<th scope=\"row\">decimate</th>", "<th scope=\"row\">LOD1</th>",
+                             "normals, 64 x 64", "occlusion, 32 x 32", "alt=\"source\""})
+        EXPECT_GE(count_of(page, text), 1U);
+    // Four of the models, the charts and two maps.
+    EXPECT_EQ(count_of(page, "src=\"data:image/png;base64,"), 7U);
+    for (const char* address : {"http://", "https://"})
+        EXPECT_EQ(page.find(address), std::string::npos) << address;
+    EXPECT_EQ(page.find("{{"), std::string::npos);
+}
+
+TEST(MakePage, DescribesOneAsset) {
+    const Workplace workplace;
+    const ProgramResult result =
+        workplace.run("relief make data/vase.obj data/urn-low.obj -o out/ --report out/a.html");
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.error, HasSubstr("a page describes one asset"));
+}
+
+TEST(ReducedPicture, HasTheMeanOfEachSquare) {
+    Image image;
+    image.width = 4;
+    image.height = 2;
+    image.channels = 1;
+    image.samples = std::vector<std::uint8_t>{0, 2, 10, 10, 4, 6, 10, 14};
+    const Image small = reduced(image, 2);
+    EXPECT_EQ(small.width, 2);
+    EXPECT_EQ(small.height, 1);
+    EXPECT_EQ(std::get<std::vector<std::uint8_t>>(small.samples),
+              (std::vector<std::uint8_t>{3, 11}));
+    EXPECT_EQ(reduced(image, 4).width, 4);
+}
+
+}  // namespace
+}  // namespace relief::tools

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tool relief: `relief make`, and the other tools as its commands.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "relief/mesh/image_file.h"
+#include "support/labels.h"
+#include "tools/linked_tools.h"
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using test::expect_refusals;
+using test::ProgramResult;
+using test::Workplace;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* quick = " --triangles 400 --size 64 --padding 2 --occlusion-rays 2";
+
+TEST(MakeCommand, MakesAnAssetThatPassesTheChecks) {
+    const Workplace workplace;
+    const ProgramResult result =
+        workplace.run(std::string("relief make data/urn-high.ply out/urn.glb --lods 1 "
+                                  "--report out/urn.json") +
+                      quick);
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("asset     400 triangles, "));
+    EXPECT_THAT(result.out, HasSubstr("LOD1: 200 triangles"));
+    EXPECT_EQ(workplace.outputs(), "urn.glb urn.json");
+    const ProgramResult check = workplace.run("relief-mesh check out/urn.glb --for-baking");
+    EXPECT_EQ(check.exit_code, 0) << check.out << check.error;
+    const json report = json::parse(workplace.read("out/urn.json"));
+    EXPECT_EQ(report["tool"], "relief make");
+    EXPECT_EQ(report["triangles"], 400);
+    EXPECT_EQ(report["source"]["triangles"], 26800);
+    EXPECT_EQ(report["maps"][0]["width"], 64);
+    EXPECT_EQ(report["maps"][1]["content"], "occlusion");
+    std::vector<std::string> stages;
+    for (const json& stage : report["stages"]) {
+        stages.push_back(stage["stage"]);
+        EXPECT_GT(stage["peak_bytes"].get<double>(), 1e6);
+    }
+    EXPECT_EQ(stages, (std::vector<std::string>{"read", "repair", "decimate", "unwrap", "frames",
+                                                "bake", "write", "verify"}));
+}
+
+TEST(MakeCommand, WritesTheSameBytesForAnyNumberOfThreads) {
+    const Workplace workplace;
+    const std::string line = std::string("relief make data/urn-high.ply") + quick + " --lods 1";
+    ASSERT_EQ(workplace.run(line + " -o out/a.glb --threads 1").exit_code, 0);
+    std::filesystem::rename(workplace / "out/a.glb", workplace / "out/b.glb");
+    ASSERT_EQ(workplace.run(line + " -o out/a.glb --threads 3").exit_code, 0);
+    EXPECT_EQ(workplace.read("out/a.glb"), workplace.read("out/b.glb"));
+}
+
+TEST(MakeCommand, ReadsEveryFormat) {
+    const Workplace workplace;
+    for (const char* format : {"obj", "ply", "glb"}) {
+        SCOPED_TRACE(format);
+        const std::string input = std::string("out/vase.") + format;
+        ASSERT_EQ(workplace.run("relief-mesh process data/vase.obj " + input).exit_code, 0);
+        const ProgramResult result =
+            workplace.run("relief make " + input + " -o out/assets/" + quick);
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+    }
+    workplace.write("out/a.stl",
+                    "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 "
+                    "1 0\nendloop\nendfacet\nendsolid a\n");
+    const ProgramResult result =
+        workplace.run(std::string("relief make out/a.stl out/stl.glb") + quick);
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("source with fewer triangles than requested"));
+}
+
+TEST(MakeCommand, WritesMapsForEngines) {
+    const Workplace workplace;
+    const ProgramResult result = workplace.run(
+        std::string("relief make data/urn-high.ply out/urn.glb --for unreal") + quick);
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(workplace.outputs(), "urn.glb urn_N.png urn_ORM.png");
+    const ImageInfo info = read_image_info(workplace / "out/urn_N.png");
+    EXPECT_EQ(info.metadata.at("relief:green"), "down");
+    EXPECT_EQ(info.width, 64);
+    EXPECT_EQ(read_image_info(workplace / "out/urn_ORM.png").width, 32);
+}
+
+TEST(MakeCommand, MakesManyAssetsAlthoughOneFails) {
+    const Workplace workplace;
+    workplace.write("out/empty.ply", "");
+    workplace.write_square("out/square.obj");
+    const ProgramResult result = workplace.run(
+        std::string("relief make out/empty.ply out/square.obj data/vase.obj -o out/assets/") +
+        quick);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.error, HasSubstr("empty.ply: "));
+    EXPECT_TRUE(std::filesystem::exists(workplace / "out/assets/square.glb"));
+    EXPECT_TRUE(std::filesystem::exists(workplace / "out/assets/vase.glb"));
+}
+
+TEST(MakeCommand, LeavesOutMissingTextures) {
+    const Workplace workplace;
+    workplace.write_square("out/square.obj");
+    const std::string text = workplace.read("out/square.obj");
+    workplace.write("out/square.obj", "mtllib square.mtl\nusemtl wood\n" + text);
+    workplace.write("out/square.mtl", "newmtl wood\nKd 1 1 1\nmap_Kd missing.png\n");
+    const ProgramResult result =
+        workplace.run(std::string("relief make out/square.obj out/a.glb") + quick);
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("missing.png"));
+    EXPECT_THAT(result.out, HasSubstr("left out"));
+}
+
+TEST(MakeCommand, RefusesWhatItCannotDo) {
+    const Workplace workplace;
+    workplace.write("out/empty.ply", "");
+    workplace.write("out/old.glb", "old");
+    std::filesystem::create_directory(workplace / "in");
+    std::filesystem::rename(workplace / "out/empty.ply", workplace / "in/empty.ply");
+    expect_refusals(
+        workplace, "relief", "old.glb",
+        {{"relief make in/empty.ply out/old.glb", 1, "in/empty.ply: "},
+         {"relief make none.ply out/old.glb", 1, "none.ply: no such file"},
+         {"relief make data/vase.obj out/old.obj", 2, "cannot hold the maps of an asset"},
+         {"relief make data/vase.obj out/old.glb --triangles 0", 2, "--triangles 0: "},
+         {"relief make data/vase.obj out/old.glb --size 8", 2, "--size 8: "},
+         {"relief make data/vase.obj out/old.glb --crease 200", 2, "--crease 200: "},
+         {"relief make data/vase.obj none/old.glb", 1,
+          "none/old.glb: the folder none does not exist"}});
+}
+
+TEST(MakeCommand, RefusesModelsThatMove) {
+    const Workplace workplace;
+    workplace.write_square("out/square.obj");
+    ASSERT_EQ(workplace.run("relief-mesh process out/square.obj out/square.gltf").exit_code, 0);
+    json document = json::parse(workplace.read("out/square.gltf"));
+    document["skins"] = json::array({{{"joints", {0}}}});
+    workplace.write("out/square.gltf", document.dump());
+    const ProgramResult result =
+        workplace.run(std::string("relief make out/square.gltf out/a.glb") + quick);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.error,
+                HasSubstr("has 1 skin, which an asset of one static mesh would lose"));
+    EXPECT_FALSE(std::filesystem::exists(workplace / "out/a.glb"));
+}
+
+TEST_LABELS(not_sanitized);
+TEST(MakeCommand, LeavesNoFileAfterAnInterruption) {
+    const Workplace workplace;
+    const ProgramResult result = test::run_program_until(
+        {"relief", "make", "data/urn-high.ply", "out/a.glb", "--size", "4096"}, workplace / "",
+        [] { return true; }, SIGINT);
+    EXPECT_EQ(result.exit_code, 128 + SIGINT);
+    EXPECT_EQ(workplace.outputs(), "");
+}
+
+TEST(ReliefTool, RunsTheOtherToolsWithTheirArgumentsAndExitCodes) {
+    const Workplace workplace;
+    const ProgramResult version = test::run_shell("relief mesh --version", workplace / "");
+    EXPECT_EQ(version.exit_code, 0);
+    EXPECT_THAT(version.out, HasSubstr("relief-mesh "));
+    EXPECT_EQ(test::run_shell("relief mesh info none.obj", workplace / "").exit_code, 1);
+    const ProgramResult usage = test::run_shell("relief mesh check --nothing", workplace / "");
+    EXPECT_EQ(usage.exit_code, 2);
+    EXPECT_THAT(usage.error, HasSubstr("relief-mesh"));
+    const ProgramResult help = test::run_shell("relief --help", workplace / "");
+    for (const char* word : {"  make ", "  mesh ", "  bake ", "  view ", "  accuracy "})
+        EXPECT_THAT(help.out, HasSubstr(word));
+    EXPECT_LT(std::ranges::count(help.out, '\n'), 30);
+    EXPECT_EQ(test::run_shell("relief", workplace / "").exit_code, 2);
+}
+
+}  // namespace
+}  // namespace relief::tools

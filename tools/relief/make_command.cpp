@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command `relief make`. Tests: tests/tools/relief_make_test.cpp.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "common/file_jobs.h"
+#include "common/model_file.h"
+#include "common/options.h"
+#include "common/summary.h"
+#include "driver.h"
+#include "make_job.h"
+#include "make_page.h"
+
+namespace relief::tools {
+namespace {
+
+struct MakeCommand {
+    FileWords words;
+    MakeRequest request;
+    ReportOptions report;
+    GeneralOptions general;
+};
+
+JobList make_jobs_of(const MakeCommand& command) {
+    JobList list = jobs_of(command.words, "model", [](const std::filesystem::path& input) {
+        readable_format(input);
+        return input.filename().replace_extension(extension_for(ModelFormat::glb));
+    });
+    for (const Job& job : list.jobs) {
+        readable_format(job.input);
+        if (!is_document(writable_format(job.output))) {
+            throw UsageError(
+                fmt::format("{}: cannot hold the maps of an asset", job.output.string()),
+                "write a .glb or .gltf");
+        }
+    }
+    return list;
+}
+
+/// No file may be written twice, and none may replace an input.
+void check_outputs(const MakeCommand& command, const JobList& list) {
+    std::vector<std::filesystem::path> files;
+    std::set<std::filesystem::path> inputs, outputs;
+    for (const Job& job : list.jobs) {
+        inputs.insert(identity_of(job.input));
+        files.push_back(job.input);
+    }
+    for (const Job& job : list.jobs) {
+        for (const std::filesystem::path& file : outputs_of(command.request, job.output)) {
+            if (inputs.contains(identity_of(file)))
+                throw UsageError(fmt::format("{}: would replace an input", file.string()),
+                                 "choose another output");
+            if (!outputs.insert(identity_of(file)).second)
+                throw UsageError(fmt::format("{}: is the output of two inputs", file.string()),
+                                 "rename one of them");
+            files.push_back(file);
+        }
+    }
+    if (list.folder) make_folder(*list.folder);
+    check(command.report, files);
+    require_folder_of(list.jobs.front().output);
+}
+
+Json options_json(const MakeCommand& command) {
+    const make::AssetOptions& asset = command.request.asset;
+    Json json = {{"triangles", asset.triangles},
+                 {"size", {asset.size.x, asset.size.y}},
+                 {"padding", asset.padding},
+                 {"keep_uvs", asset.keep_texcoords},
+                 {"samples", asset.samples},
+                 {"occlusion_rays", asset.occlusion ? asset.occlusion_rays : 0},
+                 {"lods", asset.levels},
+                 {"for", enum_name(command.request.engine)}};
+    json["crease"] = nullptr;
+    if (asset.crease_angle) json["crease"] = *asset.crease_angle * 180.0 / std::numbers::pi;
+    return json;
+}
+
+/// Returns whether the report is an HTML page.
+bool has_page(const ReportOptions& report) {
+    return report.file && extension_of(*report.file) == ".html";
+}
+
+/// The line that repeats a job, with all options that change the asset.
+std::string repeating_line(const MakeCommand& command, const Job& job) {
+    const make::AssetOptions& asset = command.request.asset;
+    std::string line = fmt::format(
+        "relief make {} -o {} --triangles {} --size {}x{} --padding {} --crease {}",
+        quoted(job.input), quoted(job.output), asset.triangles, asset.size.x, asset.size.y,
+        asset.padding,
+        asset.crease_angle ? fmt::format("{:.6g}", *asset.crease_angle * 180.0 / std::numbers::pi)
+                           : "none");
+    if (asset.keep_texcoords) line += " --keep-uvs";
+    line += fmt::format(" --samples {} --occlusion-rays {} --lods {} --for {}", asset.samples,
+                        asset.occlusion ? asset.occlusion_rays : 0, asset.levels,
+                        enum_name(command.request.engine));
+    return line;
+}
+
+ExitCode make_one(const CLI::App& app, const MakeCommand& command, const Job& job, Json head) {
+    Stages stages(command.general.quiet);
+    const MadeAsset made = make_file(command.request, job, stages);
+    ReportOptions report = command.report;
+    if (has_page(report)) {
+        stages.run("report", [&] {
+            write_make_page(*report.file, command.request, job, made, stages,
+                            repeating_line(command, job));
+        });
+        report.file.reset();
+    }
+    const Summary summary = summary_of(command.request, job, made, stages);
+    if (!command.general.quiet) summary.print();
+    head["command"] = repeating_line(command, job);
+    head.update(summary.json());
+    return finish(app, report, job.input, made.findings, head);
+}
+
+ExitCode make_all(const CLI::App& app, const MakeCommand& command, const JobList& list, Json head) {
+    Batch batch;
+    batch.jobs = list.jobs;
+    batch.one_by_one = true;  // Each asset uses all processors and much memory.
+    batch.head = std::move(head);
+    batch.work = [&](std::size_t index) -> FileOutcome {
+        const Job& job = list.jobs[index];
+        Stages stages(true);
+        const MadeAsset made = make_file(command.request, job, stages);
+        return {line_of(job, made, stages), made.findings,
+                summary_of(command.request, job, made, stages)};
+    };
+    return run_batch(app, batch, command.report, command.general);
+}
+
+ExitCode make(const CLI::App& app, const MakeCommand& command) {
+    const JobList list = make_jobs_of(command);
+    if (has_page(command.report) && !list.is_single()) {
+        throw UsageError(
+            fmt::format("--report {}: a page describes one asset", command.report.file->string()),
+            "give a .json file for several");
+    }
+    check_outputs(command, list);
+    set_thread_limit(command.general.threads);
+    const Json head = {
+        {"tool", "relief make"}, {"version", version()}, {"options", options_json(command)}};
+    return list.is_single() ? make_one(app, command, list.jobs.front(), head)
+                            : make_all(app, command, list, head);
+}
+
+/// Parses "2048" or "2048x1024".
+glm::ivec2 parse_map_size(const std::string& subject, const std::string& text) {
+    if (text.find('x') != std::string::npos) return parse_size(subject, text);
+    return glm::ivec2(parse_integer(subject, text, 16, 16384));
+}
+
+void add_make_options(CLI::App& app, MakeCommand& command) {
+    make::AssetOptions& asset = command.request.asset;
+    add_files(app, "FILE...", command.words.files,
+              "IN OUT: the dense model to read (.glb .gltf .obj .ply .stl .off) and the asset to "
+              "write (.glb .gltf). With -o: any number of models to read. Skinned and animated "
+              "models are refused.");
+    const std::string shape = "Shape";
+    add_value(app, "--triangles", "N", "The number of triangles of the asset. Default: 5000.",
+              [&asset](const std::string& subject, const std::string& text) {
+                  asset.triangles = static_cast<std::size_t>(
+                      parse_integer(subject, text, 1, std::numeric_limits<int>::max()));
+              })
+        .group(shape);
+    add_value(app, "--crease", "DEGREES",
+              "Edges with a larger angle between their triangles are hard: normals differ on both "
+              "sides, and charts end there. none: all edges are smooth. Default: 60.",
+              [&asset](const std::string& subject, const std::string& text) {
+                  if (text == "none") {
+                      asset.crease_angle.reset();
+                      return;
+                  }
+                  asset.crease_angle =
+                      parse_number(subject, text, {0.0, 180.0, "degrees"}) * std::numbers::pi / 180;
+              })
+        .group(shape);
+    add_value(app, "--lods", "N",
+              "The number of levels of detail below the asset, 0 to 16. Each has half the "
+              "triangles of the one before, and the same maps. Default: 0.",
+              [&asset](const std::string& subject, const std::string& text) {
+                  asset.levels = static_cast<std::size_t>(parse_integer(subject, text, 0, 16));
+              })
+        .group(shape);
+    const std::string maps = "Maps";
+    add_value(app, "--size", "N|WxH", "The size of the maps in texels. Default: 2048.",
+              [&asset](const std::string& subject, const std::string& text) {
+                  asset.size = parse_map_size(subject, text);
+              })
+        .group(maps);
+    add_value(app, "--padding", "N",
+              "The distance of charts in texels, and the width of the padding around them, 0 to "
+              "256. Default: 8.",
+              [&asset](const std::string& subject, const std::string& text) {
+                  asset.padding = parse_integer(subject, text, 0, 256);
+              })
+        .group(maps);
+    add_switch(app, "--keep-uvs", asset.keep_texcoords,
+               "Keep the texture coordinates of the model instead of computing new ones. They must "
+               "not overlap.")
+        .group(maps);
+    add_value(app, "--samples", "N",
+              "The rays of a texel for normals and colors: 1, 4, 16 or 64. Default: 1.",
+              [&asset](const std::string& subject, const std::string& text) {
+                  asset.samples = parse_choice<int>(subject, text,
+                                                    {{"1", 1}, {"4", 4}, {"16", 16}, {"64", 64}});
+              })
+        .group(maps);
+    add_value(app, "--occlusion-rays", "N",
+              "The rays of a texel of the occlusion map, which has half the size of the others, 0 "
+              "to 4096. 0: there is no occlusion map. Default: 32.",
+              [&asset](const std::string& subject, const std::string& text) {
+                  asset.occlusion_rays = parse_integer(subject, text, 0, 4096);
+                  asset.occlusion = asset.occlusion_rays > 0;
+              })
+        .group(maps);
+    const std::string output = "Output";
+    add_value(
+        app, "-o,--output", "PATH",
+        "The output: a folder (with / at the end, or existing), or a file for one model. In a "
+        "folder, each model keeps its name, as .glb. If a model fails, the others are still made.",
+        [&command](const std::string&, const std::string& text) { command.words.output = text; })
+        .group(output);
+    add_choice(app, "--for", command.request.engine, enum_choices<Engine>(),
+               "The engine. unity and unreal: also write maps as PNG files beside the asset, with "
+               "the names, channels and green of the engine. Default: gltf.")
+        .group(output);
+    add_report_options(app, command.report);
+    add_general_options(app, command.general);
+    set_examples(app,
+                 {"relief make data/urn-high.ply out/urn-asset.glb --triangles 2000 --size 512",
+                  "relief make data/urn-high.ply -o out/urn-asset.glb --size 512 --lods 2 "
+                  "--for unreal --report out/urn-asset.html",
+                  "relief make data/*.obj -o out/assets/ --triangles 500 --size 256"});
+}
+
+}  // namespace
+
+Command add_make_command(CLI::App& tool) {
+    return add_command<MakeCommand>(
+        tool, "make",
+        "Makes an asset with maps from a dense mesh: decimates, unwraps, bakes, writes and checks.",
+        add_make_options, make);
+}
+
+}  // namespace relief::tools

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+// Makes an asset from file to file, and describes it. Tests: tests/tools/relief_make_test.cpp.
+#include "make_job.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "common/model_file.h"
+#include "file_replacement.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/map_description.h"
+#include "relief/mesh/normal_map.h"
+
+namespace relief::tools {
+namespace {
+
+/// Returns the largest memory that the process has used so far.
+std::uint64_t peak_memory() {
+    rusage use{};
+    ::getrusage(RUSAGE_SELF, &use);
+#if defined(__APPLE__)
+    return static_cast<std::uint64_t>(use.ru_maxrss);
+#else
+    return 1024 * static_cast<std::uint64_t>(use.ru_maxrss);
+#endif
+}
+
+/// Engines that read the maps of glTF files in their convention need no other files.
+bool has_map_files(Engine engine) {
+    return engine == Engine::unity || engine == Engine::unreal;
+}
+
+/// "rock_N.png" for rock.glb.
+std::filesystem::path map_file(const std::filesystem::path& output, const std::string& suffix) {
+    return output.parent_path() / (output.stem().string() + suffix + ".png");
+}
+
+/// Returns the normal map with the direction of green that an engine reads. The code of zero is
+/// 127.5, so that the opposite of each code exists.
+Image normal_map_for(const Image& map, Green green) {
+    Image result = map;
+    if (green == Green::up) return result;
+    const std::span<std::uint8_t> samples = result.as<std::uint8_t>();
+    for (std::size_t i = 1; i < samples.size(); i += 3)
+        samples[i] = static_cast<std::uint8_t>(255 - samples[i]);
+    return result;
+}
+
+/// Packs the occlusion with the roughness 1 and the metalness 0 of the asset's material.
+Image packed_map_for(const Image& occlusion, const EngineRules& rules) {
+    Image packed;
+    packed.width = occlusion.width;
+    packed.height = occlusion.height;
+    packed.channels = rules.channels;
+    std::vector<std::uint8_t> samples(packed.sample_count());
+    const std::span<const std::uint8_t> open = occlusion.as<std::uint8_t>();
+    const auto channels = static_cast<std::size_t>(rules.channels);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        switch (rules.packed[i % channels]) {
+            case PackedChannel::occlusion:
+                samples[i] = open[i / channels];
+                break;
+            case PackedChannel::roughness:
+                samples[i] = 255;
+                break;
+            default:
+                samples[i] = 0;
+        }
+    }
+    packed.samples = std::move(samples);
+    return packed;
+}
+
+void write_engine_maps(const MakeRequest& request, const std::filesystem::path& output,
+                       const make::Asset& asset) {
+    if (!has_map_files(request.engine)) return;
+    const EngineRules& rules = rules_of(request.engine);
+    NormalMapFormat format;
+    format.bits = 8;
+    format.green = rules.green;
+    write_image(map_file(output, rules.normal_name), normal_map_for(asset.normal_map, rules.green),
+                normal_map_metadata(format));
+    if (asset.occlusion_map) {
+        MapDescription packed{.kind = MapKind::packed};
+        packed.detail = enum_name(request.engine);
+        packed.color_space = ColorSpace::data;
+        write_image(map_file(output, rules.packed_name),
+                    packed_map_for(*asset.occlusion_map, rules), write_description(packed, 8));
+    }
+    if (asset.color_map) {
+        write_image(
+            map_file(output, "_color"), *asset.color_map,
+            write_description({.kind = MapKind::color, .color_space = ColorSpace::srgb}, 8));
+    }
+}
+
+std::string atlas_text(const AtlasStats& stats, const glm::ivec2& size) {
+    return fmt::format("{}, {:.1f} % of {} x {} texels used, mean stretch {:.3f}",
+                       counted(stats.charts, "chart"), 100.0 * stats.used, size.x, size.y,
+                       stats.stretch);
+}
+
+Json atlas_json(const AtlasStats& stats) {
+    return {{"charts", stats.charts},
+            {"used", stats.used},
+            {"texels_per_unit", stats.texels_per_unit},
+            {"stretch", stats.stretch},
+            {"seam_length", stats.seam_length},
+            {"safe_mip_level", or_null(stats.safe_mip_level)}};
+}
+
+std::vector<std::string> map_lines(const MadeAsset& made) {
+    const make::Asset& asset = made.asset;
+    const BakeResult& bake = asset.bake;
+    std::vector<std::string> lines = {fmt::format(
+        "normals {} x {}: {} baked, {} missed; the source is {:.3g} to {:.3g} outside",
+        asset.normal_map.width, asset.normal_map.height, counted(bake.texels_baked, "texel"),
+        bake.texels_missed, bake.min_height, bake.max_height)};
+    if (asset.occlusion_map) {
+        lines.push_back(fmt::format("occlusion {} x {}: {:.3g} million rays",
+                                    asset.occlusion_map->width, asset.occlusion_map->height,
+                                    static_cast<double>(bake.occlusion_rays) / 1e6));
+    }
+    if (asset.color_map) {
+        lines.push_back(fmt::format("colors {} x {}{}", asset.color_map->width,
+                                    asset.color_map->height,
+                                    asset.color_map->channels == 4 ? ", opacity in alpha" : ""));
+    }
+    return lines;
+}
+
+Json maps_json(const make::Asset& asset) {
+    const auto map_json = [](const char* content, const Image& image) -> Json {
+        return {{"content", content}, {"width", image.width}, {"height", image.height}};
+    };
+    Json maps = Json::array({map_json("normals", asset.normal_map)});
+    if (asset.occlusion_map) maps.push_back(map_json("occlusion", *asset.occlusion_map));
+    if (asset.color_map) maps.push_back(map_json("colors", *asset.color_map));
+    return {{"maps", maps},
+            {"texels_baked", asset.bake.texels_baked},
+            {"texels_missed", asset.bake.texels_missed},
+            {"rays", asset.bake.rays},
+            {"occlusion_rays", asset.bake.occlusion_rays},
+            {"min_height", asset.bake.min_height},
+            {"max_height", asset.bake.max_height}};
+}
+
+std::vector<std::string> level_lines(const MadeAsset& made) {
+    std::vector<std::string> lines;
+    for (const make::AssetLevel& level : made.levels) {
+        lines.push_back(fmt::format(
+            "LOD{}: {}, largest distance {:.3g}, used below {:.4g} pixels, {:.3g} % of the screen",
+            lines.size() + 1, counted(level.triangles, "triangle"), level.distance, level.pixels,
+            100.0 * level.coverage));
+    }
+    return lines;
+}
+
+Json level_json(const make::AssetLevel& level) {
+    return {{"triangles", level.triangles},
+            {"distance", level.distance},
+            {"pixels", level.pixels},
+            {"coverage", level.coverage}};
+}
+
+std::vector<std::string> stage_lines(const MadeAsset& made, const Stages& stages) {
+    std::vector<std::string> lines;
+    for (const StageMemory& stage : made.memory) {
+        const double milliseconds = stages.milliseconds(stage.stage);
+        lines.push_back(fmt::format("{:<9}{:>9}{:>12}", stage.stage, duration(milliseconds),
+                                    byte_size(stage.peak_bytes)));
+    }
+    lines.push_back(fmt::format("{:<9}{:>9}   (memory: the peak so far)", "all",
+                                duration(stages.milliseconds())));
+    return lines;
+}
+
+Json stages_json(const MadeAsset& made, const Stages& stages) {
+    return json_list(made.memory, [&](const StageMemory& stage) -> Json {
+        return {{"stage", stage.stage},
+                {"milliseconds", stages.milliseconds(stage.stage)},
+                {"peak_bytes", stage.peak_bytes}};
+    });
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> outputs_of(const MakeRequest& request,
+                                              const std::filesystem::path& output) {
+    std::vector<std::filesystem::path> files = {output};
+    if (!has_map_files(request.engine)) return files;
+    const EngineRules& rules = rules_of(request.engine);
+    files.push_back(map_file(output, rules.normal_name));
+    if (request.asset.occlusion) files.push_back(map_file(output, rules.packed_name));
+    files.push_back(map_file(output, "_color"));
+    return files;
+}
+
+MadeAsset make_file(const MakeRequest& request, const Job& job, Stages& stages) {
+    MadeAsset made;
+    const auto run_stage = [&](std::string_view name, const std::function<void()>& work) {
+        const std::string stage(name);
+        stages.run(stage, work);
+        made.memory.push_back({stage, peak_memory()});
+    };
+    make::AssetSource source;
+    run_stage("read", [&] { source = read_source(job.input, made.source, made.findings); });
+    source.name = job.output.stem().string();
+    make::AssetOptions options = request.asset;
+    options.run_stage = run_stage;
+    made.asset = about(job.input, [&] { return make::make_asset(source, options); });
+    for (const make::StageReport& stage : made.asset.reports) {
+        made.findings.add(stage.stage, stage.report,
+                          stage.stage == "bake" ? request.asset.size.x : 0);
+    }
+    relief::detail::FileSet files;
+    run_stage("write", [&] {
+        Report report;
+        made.levels = about(job.input, [&] {
+            return make::write_asset(job.output, made.asset, options.levels, report);
+        });
+        write_engine_maps(request, job.output, made.asset);
+        made.findings.add("write", report);
+    });
+    run_stage("verify", [&] {
+        const Report problems = make::verify_asset(job.output, made.asset);
+        made.findings.add("verify", problems);
+    });
+    files.commit();
+    for (const std::filesystem::path& file : outputs_of(request, job.output)) {
+        const bool is_color = file == map_file(job.output, "_color");
+        if (!is_color || made.asset.color_map) made.files.push_back(file);
+    }
+    return made;
+}
+
+Summary summary_of(const MakeRequest& request, const Job& job, const MadeAsset& made,
+                   const Stages& stages) {
+    const make::Asset& asset = made.asset;
+    Summary summary;
+    summary.add("read",
+                fmt::format("{}: {}, {}, {}{}{}", job.input.string(), made.source.format,
+                            counted(made.source.triangles, "triangle"),
+                            counted(made.source.vertices, "vertex", "vertices"),
+                            made.source.textures.empty() ? "" : ", ", made.source.textures),
+                {{"input", job.input.string()},
+                 {"output", job.output.string()},
+                 {"source",
+                  {{"format", made.source.format},
+                   {"triangles", made.source.triangles},
+                   {"vertices", made.source.vertices},
+                   {"usable_triangles", asset.source_triangles}}}});
+    summary.add(
+        "asset",
+        fmt::format("{}, {}", counted(asset.mesh.triangles.size(), "triangle"),
+                    counted(asset.mesh.positions.size(), "vertex", "vertices")),
+        {{"triangles", asset.mesh.triangles.size()}, {"vertices", asset.mesh.positions.size()}});
+    if (asset.atlas) {
+        summary.add("atlas", atlas_text(*asset.atlas, request.asset.size),
+                    {{"atlas", atlas_json(*asset.atlas)}});
+    }
+    summary.add("maps", map_lines(made), maps_json(asset));
+    summary.add("levels", level_lines(made), {{"levels", json_list(made.levels, level_json)}});
+    summary.add_findings(made.findings);
+    summary.add("stages", stage_lines(made, stages), {{"stages", stages_json(made, stages)}});
+    std::vector<std::string> written;
+    for (const std::filesystem::path& file : made.files)
+        written.push_back(file_and_size(file));
+    summary.add("wrote", written);
+    return summary;
+}
+
+std::string line_of(const Job& job, const MadeAsset& made, const Stages& stages) {
+    return fmt::format("{}: {} -> {}, {}, {}", job.output.string(), made.source.triangles,
+                       counted(made.asset.mesh.triangles.size(), "triangle"),
+                       made.findings.count_text(), duration(stages.milliseconds()));
+}
+
+}  // namespace relief::tools

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes the report page of `relief make`. Tests: tests/make/make_page_test.cpp.
+#include "make_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <map>
+#include <span>
+#include <utility>
+
+#include "common/html.h"
+#include "common/text.h"
+#include "file_replacement.h"
+#include "files.h"
+#include "relief/mesh/image_file.h"
+
+namespace relief::tools {
+namespace {
+
+std::string_view part(std::string_view name) {
+    const auto& parts = make_page_parts();
+    const auto found = std::ranges::find(parts, name, &MakePagePart::name);
+    assert(found != parts.end());
+    return found->text;
+}
+
+/// Replaces {{name}} by its text.
+std::string filled(std::string_view page, const std::map<std::string, std::string>& texts) {
+    std::string result;
+    while (true) {
+        const std::size_t begin = page.find("{{");
+        result += page.substr(0, begin);
+        if (begin == std::string_view::npos) return result;
+        const std::size_t end = page.find("}}", begin);
+        assert(end != std::string_view::npos);
+        result += texts.at(std::string(page.substr(begin + 2, end - begin - 2)));
+        page.remove_prefix(end + 2);
+    }
+}
+
+/// Returns the bytes of a PNG file.
+/// \param folder  for a temporary file
+std::string png_of(const Image& image, const std::filesystem::path& folder) {
+    const relief::detail::FileSet temporary;  // It is never committed.
+    const std::filesystem::path file = folder / "picture.png";
+    write_image(file, image);
+    return relief::detail::read_file(file);
+}
+
+/// Writes elements with pictures.
+class PageWriter {
+  public:
+    PageWriter(std::filesystem::path folder, const MakeRequest& request, const Job& job,
+               const MadeAsset& made, const Stages& stages)
+        : folder_(std::move(folder)), request_(request), job_(job), made_(made), stages_(stages) {}
+
+    [[nodiscard]] std::string figures() const;
+    [[nodiscard]] std::string comparison() const;
+    [[nodiscard]] std::string findings() const;
+    [[nodiscard]] std::string stages() const;
+    [[nodiscard]] std::string levels() const;
+    [[nodiscard]] std::string maps() const;
+
+  private:
+    [[nodiscard]] std::string img(const Image& image, const std::string& alt,
+                                  const std::string& id = "") const;
+
+    std::filesystem::path folder_;
+    const MakeRequest& request_;
+    const Job& job_;
+    const MadeAsset& made_;
+    const Stages& stages_;
+};
+
+std::string PageWriter::img(const Image& image, const std::string& alt,
+                            const std::string& id) const {
+    const std::string name = id.empty() ? "" : fmt::format(" id=\"{}\"", id);
+    return fmt::format(
+        "<img{} alt=\"{}\" width=\"{}\" height=\"{}\" src=\"data:image/png;base64,{}\">", name,
+        html_escaped(alt), image.width, image.height, base64(png_of(image, folder_)));
+}
+
+std::string PageWriter::figures() const {
+    const make::Asset& asset = made_.asset;
+    return html_escaped(fmt::format("{}: {} became {}, with maps of {} x {} texels.",
+                                    job_.input.filename().string(),
+                                    counted(made_.source.triangles, "triangle"),
+                                    counted(asset.mesh.triangles.size(), "triangle"),
+                                    asset.normal_map.width, asset.normal_map.height));
+}
+
+std::string PageWriter::comparison() const {
+    const glm::ivec2 size(960, 720);
+    try {
+        const AssetPictures pictures =
+            draw_asset(job_.input, job_.output, made_.asset, request_.asset.crease_angle, size);
+        return fmt::format(
+            "<figure class=\"comparison\">\n<div class=\"stack\">{}{}</div>\n"
+            "<div class=\"controls\"><input type=\"range\" min=\"0\" max=\"100\" value=\"50\" "
+            "aria-label=\"split\">\n"
+            "<label><input type=\"radio\" name=\"right\" value=\"asset\" checked> asset</label>\n"
+            "<label><input type=\"radio\" name=\"right\" value=\"plain\"> asset without "
+            "maps</label></div>\n"
+            "<figcaption>Left of the line: the source. Right: the choice above. One camera, the "
+            "same lights, drawn by {}.</figcaption>\n"
+            "<details><summary>All pictures</summary>{}{}</details></figure>\n",
+            img(pictures.source, "source"), img(pictures.asset, "asset or asset without maps"),
+            html_escaped(pictures.backend), img(pictures.asset, "asset", "asset"),
+            img(pictures.plain, "asset without maps", "plain"));
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const FileError&) {
+        throw;
+    } catch (const Error& error) {
+        return fmt::format("<p>The models could not be drawn: {}</p>", html_escaped(error.what()));
+    }
+}
+
+std::string PageWriter::findings() const {
+    if (made_.findings.empty()) return "<p>None.</p>";
+    std::string list;
+    for (const PlacedFinding& finding : made_.findings.all())
+        list += "<li>" + html_escaped(to_string(finding)) + "</li>\n";
+    return "<ul>\n" + list + "</ul>";
+}
+
+std::string table(const std::string& head, const std::string& rows) {
+    return "<div class=\"scrolled\" tabindex=\"0\"><table><thead><tr>" + head +
+           "</tr></thead><tbody>\n" + rows + "</tbody></table></div>\n";
+}
+
+std::string PageWriter::stages() const {
+    const double all = std::max(stages_.milliseconds(), 1e-9);
+    std::string rows;
+    for (const StageMemory& stage : made_.memory) {
+        const double time = stages_.milliseconds(stage.stage);
+        rows += fmt::format(
+            "<tr><th scope=\"row\">{}</th><td>{}</td><td>{:.0f} %</td><td>{}</td></tr>\n",
+            stage.stage, duration(time), 100.0 * time / all, byte_size(stage.peak_bytes));
+    }
+    return table(
+        "<th scope=\"col\">stage</th><th scope=\"col\">time</th><th scope=\"col\">share</th>"
+        "<th scope=\"col\">memory</th>",
+        rows);
+}
+
+std::string PageWriter::levels() const {
+    if (made_.levels.empty()) return "";
+    std::string rows;
+    for (const make::AssetLevel& level : made_.levels) {
+        rows += fmt::format(
+            "<tr><th scope=\"row\">LOD{}</th><td>{}</td><td>{:.3g}</td><td>{:.4g}</td></tr>\n",
+            &level - made_.levels.data() + 1, level.triangles, level.distance, level.pixels);
+    }
+    return "<h2>Levels of detail</h2>\n" +
+           table(
+               "<th scope=\"col\">level</th><th scope=\"col\">triangles</th><th scope=\"col\">"
+               "largest distance</th><th scope=\"col\">used below pixels</th>",
+               rows);
+}
+
+std::string PageWriter::maps() const {
+    constexpr int max_side = 512;
+    const make::Asset& asset = made_.asset;
+    std::string html;
+    const auto add = [&](const Image& image, const std::string& caption) {
+        html += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n",
+                            img(reduced(image, max_side), caption), html_escaped(caption));
+    };
+    const glm::ivec2 size(asset.normal_map.width, asset.normal_map.height);
+    const int factor = std::max(1, std::max(size.x, size.y) / max_side);
+    const std::string charts =
+        asset.atlas ? fmt::format("{}, {:.0f} % of the texels used",
+                                  counted(asset.atlas->charts, "chart"), 100.0 * asset.atlas->used)
+                    : "the texture coordinates of the source";
+    add(draw_charts(asset, glm::max(size / factor, glm::ivec2(1))), charts);
+    const auto size_text = [](const Image& image) {
+        return fmt::format("{} x {}", image.width, image.height);
+    };
+    add(asset.normal_map, "normals, " + size_text(asset.normal_map));
+    if (asset.color_map) add(*asset.color_map, "colors, " + size_text(*asset.color_map));
+    if (asset.occlusion_map)
+        add(*asset.occlusion_map, "occlusion, " + size_text(*asset.occlusion_map));
+    return html;
+}
+
+}  // namespace
+
+void write_make_page(const std::filesystem::path& file, const MakeRequest& request, const Job& job,
+                     const MadeAsset& made, const Stages& stages, const std::string& command) {
+    const PageWriter writer(file.parent_path(), request, job, made, stages);
+    const std::string page =
+        filled(part("make.html"), {{"name", html_escaped(made.asset.name)},
+                                   {"style", std::string(part("make.css"))},
+                                   {"script", std::string(part("make.js"))},
+                                   {"figures", writer.figures()},
+                                   {"comparison", writer.comparison()},
+                                   {"command", html_escaped(command)},
+                                   {"findings", writer.findings()},
+                                   {"stages", writer.stages()},
+                                   {"levels", writer.levels()},
+                                   {"maps", writer.maps()},
+                                   {"version", html_escaped("relief " + version() + ".")}});
+    relief::detail::replace_file(file, std::as_bytes(std::span(page)));
+}
+
+}  // namespace relief::tools

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The report of `relief make` as one HTML page, which loads nothing and can be read on a phone.
+/// Tests: tests/make/make_page_test.cpp.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "make_job.h"
+#include "make_pictures.h"
+
+namespace relief::tools {
+
+/// Writes the page. If nothing can be drawn, the page says why and has no pictures of the models.
+/// \param command  the line that repeats the job
+/// \throws FileError
+void write_make_page(const std::filesystem::path& file, const MakeRequest& request, const Job& job,
+                     const MadeAsset& made, const Stages& stages, const std::string& command);
+
+/// A file of the folder page/.
+struct MakePagePart {
+    std::string_view name;
+    std::string_view text;
+};
+/// All files of page/. cmake/embed_files.cmake generates this function.
+const std::vector<MakePagePart>& make_page_parts();
+
+}  // namespace relief::tools

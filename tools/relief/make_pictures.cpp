@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws an asset beside its source. Tests: tests/make/make_page_test.cpp.
+#include "make_pictures.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "common/model_file.h"
+#include "file_replacement.h"
+#include "mesh_preview.h"
+#include "relief/mesh/atlas_picture.h"
+#include "relief/mesh/frames.h"
+#include "relief/mesh/texcoord_quality.h"
+#include "relief/shade/renderer.h"
+#include "relief/shade/scene_file.h"
+
+namespace relief::tools {
+using namespace relief::shade;
+
+namespace {
+
+/// Loads the source with the materials that glTF gives it, so that both scenes have the same model
+/// of shading.
+Scene source_scene(const std::filesystem::path& file, const std::filesystem::path& beside,
+                   std::optional<double> crease_angle) {
+    Report ignored;  // The findings about the source are those of the stages.
+    SceneOptions options;
+    options.up = UpAxis::y;
+    if (is_document(readable_format(file))) return load_scene(file, options, ignored);
+    MeshFile contents = read_mesh(file, ignored);
+    if (contents.mesh.normals.empty()) {
+        FrameOptions frames;
+        frames.normals = NormalWeight::angle;
+        frames.crease_angle = crease_angle;
+        contents.mesh = with_frames(std::move(contents.mesh), frames, ignored).mesh;
+    }
+    std::filesystem::path converted = beside;
+    converted.replace_filename(beside.stem().string() + "-source.glb");
+    const relief::detail::FileSet temporary;  // It is never committed.
+    GltfDocument::from_mesh(contents, ignored).write(converted, ignored);
+    return load_scene(converted, options, ignored);
+}
+
+/// Removes all textures; the colors are gray.
+Scene without_maps(Scene scene) {
+    for (Material& material : scene.materials) {
+        material.normal_map.reset();
+        material.diffuse_texture.reset();
+        if (material.metallic_roughness) material.metallic_roughness->base_color = glm::vec3(0.8F);
+    }
+    return scene;
+}
+
+Image draw(RenderCache& cache, const Context& context, Scene scene, const Camera& camera,
+           const glm::ivec2& size) {
+    Report ignored;
+    add_default_lights(scene, camera);
+    scene.background = glm::vec4(0.03F, 0.033F, 0.037F, 1.0F);
+    const FrameSettings settings{.width = size.x, .height = size.y};
+    Renderer renderer(cache, context, scene, plan_effects(scene, settings), settings, ignored);
+    Image image = renderer.draw(camera).image;
+    drop_alpha(image);
+    return image;
+}
+
+}  // namespace
+
+AssetPictures draw_asset(const std::filesystem::path& source, const std::filesystem::path& asset,
+                         const make::Asset& made, std::optional<double> crease_angle,
+                         const glm::ivec2& size) {
+    const Context context;
+    RenderCache cache(context);
+    Report ignored;
+    const Scene high = source_scene(source, asset, crease_angle);
+    SceneOptions options;
+    options.up = UpAxis::y;
+    const Scene low = load_scene(asset, options, ignored);
+    const ViewDirection view = best_view(made.mesh);
+    const float aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
+    const Camera camera = framed(high, view.azimuth, view.elevation, default_vertical_fov, aspect);
+    AssetPictures pictures;
+    pictures.backend = context.backend_name();
+    pictures.source = draw(cache, context, high, camera, size);
+    pictures.asset = draw(cache, context, low, camera, size);
+    pictures.plain = draw(cache, context, without_maps(low), camera, size);
+    return pictures;
+}
+
+Image draw_charts(const make::Asset& made, const glm::ivec2& size) {
+    Report ignored;
+    const TexcoordQuality quality =
+        measure_texcoords(made.mesh, {made.normal_map.width, made.normal_map.height}, ignored);
+    std::vector<glm::vec2> corners;
+    for (const glm::uvec3& triangle : made.mesh.triangles) {
+        for (int i = 0; i < 3; ++i)
+            corners.push_back(made.mesh.texcoords[triangle[i]]);
+    }
+    return draw_atlas(made.mesh, corners, quality.chart, size);
+}
+
+Image reduced(const Image& image, int max_side) {
+    const int factor = (std::max(image.width, image.height) + max_side - 1) / max_side;
+    if (factor <= 1) return image;
+    Image small = image;
+    small.width = image.width / factor;
+    small.height = image.height / factor;
+    std::vector<std::uint8_t> samples(small.sample_count());
+    const auto from = image.as<std::uint8_t>();
+    const auto channels = static_cast<std::size_t>(image.channels);
+    const auto columns = static_cast<std::size_t>(small.width);
+    const auto block = static_cast<std::size_t>(factor);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const std::size_t channel = i % channels;
+        const std::size_t x = i / channels % columns;
+        const std::size_t y = i / channels / columns;
+        std::size_t sum = 0;
+        for (std::size_t k = 0; k < block * block; ++k) {
+            const std::size_t row = block * y + k / block;
+            const std::size_t column = block * x + k % block;
+            sum +=
+                from[(row * static_cast<std::size_t>(image.width) + column) * channels + channel];
+        }
+        samples[i] = static_cast<std::uint8_t>(sum / (block * block));
+    }
+    small.samples = std::move(samples);
+    return small;
+}
+
+}  // namespace relief::tools
