@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Measures how much a model differs from its source: in pictures (FLIP), in degrees between
+/// shading normals, and in pixels along silhouettes. docs/fidelity.md defines all figures.
+/// Tests: tests/shade/render/fidelity_test.cpp.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <memory>
+#include <vector>
+
+#include "relief/export.h"
+#include "relief/mesh/enum_names.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/mesh.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/renderer.h"
+#include "relief/shade/scene.h"
+
+namespace RELIEF_API relief {
+namespace shade {
+
+/// The light of a picture. The lights, the environment and the background of the scenes are
+/// ignored.
+enum class FidelityLight {
+    studio,      ///< studio_environment().
+    grazing,     ///< A directional light from the upper left, 75 degrees from the view axis, with
+                 ///< which it turns; white surfaces that face it have radiance 1.
+    base_color,  ///< No light: base color, or the diffuse color of Phong's model.
+};
+inline constexpr std::size_t fidelity_light_count = 3;
+
+}  // namespace shade
+
+template <>
+inline constexpr auto enum_names<shade::FidelityLight> =
+    std::to_array<EnumName<shade::FidelityLight>>({{"studio", shade::FidelityLight::studio},
+                                                   {"grazing", shade::FidelityLight::grazing},
+                                                   {"base-color",
+                                                    shade::FidelityLight::base_color}});
+
+namespace shade {
+
+/// The directions from the center of the model to the camera: the vertices of an icosahedron in
+/// world space, in opposite pairs. The y axis points up in all pictures.
+inline constexpr std::size_t fidelity_view_count = 12;
+/// \param view  less than fidelity_view_count \return a unit vector
+glm::vec3 fidelity_view(std::size_t view);
+
+/// The radius of FLIP's filters in pixels: pictures are compared up to this distance from the
+/// silhouettes.
+inline constexpr int fidelity_margin = 10;
+
+struct FidelityOptions {
+    int size = 256;  ///< Pixels of a side of the square pictures, from 16 to 4096.
+    /// Samples of a pixel: a square number from 1 to 16. All of them are shaded.
+    int samples = 4;
+    std::size_t views = fidelity_view_count;  ///< The first ones, from 1 to 12.
+};
+
+/// The view in which a figure is largest; ties: the first view wins.
+struct WorstView {
+    std::size_t view = 0;
+    double value = 0.0;  ///< The mean of that view.
+};
+
+/// The difference of the pictures with one light.
+struct PictureLoss {
+    /// FLIP, over the pixels that a model covers in some view, and those within fidelity_margin.
+    double mean = 0.0;
+    double p95 = 0.0;  ///< 95 % of these pixels do not exceed it.
+    WorstView worst;
+    /// The mean difference between the source and itself with (n + 1)^2 samples a pixel instead of
+    /// n^2, in the views 0, 4 and 8, as far as they are drawn.
+    double floor = 0.0;
+    // The pictures of the worst view.
+    Image source;      ///< sRGB of 8 bits.
+    Image result;      ///< sRGB of 8 bits.
+    Image difference;  ///< FLIP: one float channel, data.
+};
+
+/// The angles between shading normals in degrees. The normal of a pixel is the mean of its samples.
+struct NormalLoss {
+    double mean = 0.0;  ///< Over pixels that both models cover completely.
+    double p95 = 0.0;
+    double max = 0.0;
+    WorstView worst;
+    double floor = 0.0;         ///< As PictureLoss::floor.
+    std::size_t pixels = 0;     ///< The compared pixels of all views.
+    std::size_t undefined = 0;  ///< Pixels without a normal in one picture; not in the angles.
+};
+
+/// The area that only one model covers, divided by the length of the source's silhouettes: a mean
+/// distance of the silhouettes in pixels.
+struct SilhouetteLoss {
+    double width = 0.0;  ///< Of all views.
+    WorstView worst;
+    double floor = 0.0;  ///< As PictureLoss::floor.
+};
+
+/// The figures of a view.
+struct ViewLoss {
+    std::array<double, fidelity_light_count> flip{};  ///< Means, by FidelityLight.
+    double degrees = 0.0;                             ///< The mean.
+    double silhouette_pixels = 0.0;                   ///< The width.
+};
+
+struct Fidelity {
+    std::array<PictureLoss, fidelity_light_count> pictures;  ///< By FidelityLight.
+    NormalLoss normals;
+    SilhouetteLoss silhouettes;
+    std::vector<ViewLoss> views;
+    /// The mean FLIP in the studio on black instead of middle gray. If they differ by more than
+    /// 10 %, silhouettes dominate, and the report has a finding.
+    double studio_mean_on_black = 0.0;
+    double diameter = 0.0;       ///< Of the source's bounding sphere, in world units.
+    double pixels_across = 0.0;  ///< The same in pixels: 90 % of the side of the pictures.
+
+    /// The largest mean of the lights, which a limit of the difference of pictures applies to.
+    [[nodiscard]] double max_picture_mean() const;
+};
+
+/// Measures any number of models against one source, whose pictures are drawn once.
+///
+/// Both models are drawn by orthographic cameras at the same positions in world space. The source's
+/// bounding sphere (around the middle of its box) fills 90 % of the side of the pictures. Models of
+/// any size are scaled to that sphere, with their attenuation distances, so that a common factor of
+/// both models changes nothing. Equal scenes have no difference.
+class FidelityMeter {
+  public:
+    /// Draws the source.
+    /// \param context  must outlive the meter
+    /// \param report  as Renderer's
+    /// \throws InvalidInput if the source has no triangle or no extent, or an option is out of
+    ///         range; and as Renderer does
+    FidelityMeter(const Context& context, const Scene& source, const FidelityOptions& options = {},
+                  Report& report = IgnoredReport());
+    ~FidelityMeter();
+    FidelityMeter(const FidelityMeter&) = delete;
+    FidelityMeter& operator=(const FidelityMeter&) = delete;
+
+    /// Draws a model and compares it.
+    ///
+    /// \param result  in the world space of the source; without triangles, it covers no pixel
+    /// \param report  as Renderer's; and if silhouettes dominate, if the result extends beyond the
+    ///         pictures, and if no pixel can be compared
+    /// \throws as Renderer does
+    Fidelity measure(const Scene& result, Report& report = IgnoredReport());
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+/// Measures one model in a context of its own. \throws GpuError if there is none
+Fidelity measure_fidelity(const Scene& source, const Scene& result,
+                          const FidelityOptions& options = {}, Report& report = IgnoredReport());
+
+/// Returns all triangles of a scene in world space, deformed by their poses, with positions only:
+/// for distances between surfaces (relief/mesh/topology.h).
+Mesh world_surface(const Scene& scene);
+
+}  // namespace shade
+}  // namespace relief
