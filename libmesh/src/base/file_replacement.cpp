@@ -13,6 +13,7 @@
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <random>
 #include <string>
 #include <utility>
 
@@ -72,6 +73,13 @@ std::filesystem::path identity_of(const std::filesystem::path& target) {
     std::error_code error;
     const std::filesystem::path folder = std::filesystem::canonical(folder_of(target), error);
     return error ? target : folder / target.filename();
+}
+
+/// Returns a number that no other program can predict.
+std::uint64_t random_number() {
+    std::random_device random;  // The generator of the operating system or the processor.
+    const std::uint64_t high = random();
+    return high << 32 | random();
 }
 
 /// Returns a random name in the folder of the target, with its extension.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The operating system beyond the standard library: open files, names of files, signals, random
-/// numbers and the memory of the machine.
+/// The operating system beyond the standard library: open files, names of files, signals and the
+/// memory of the machine.
 ///
 /// operating_system_posix.cpp is for Linux and macOS, operating_system_windows.cpp for Windows.
 /// Paths reach the system in its own characters, so Windows reads names in every script. Errors are
@@ -23,9 +23,6 @@ namespace relief::detail {
 
 /// Returns the text of an error.
 std::string error_text(int error);
-
-/// Returns a number that no other program can predict.
-std::uint64_t random_number();
 
 /// Returns the bytes of memory of the machine, or of the control group (version 2) of this process;
 /// 8 GiB if they are unknown.

@@ -2,7 +2,6 @@
 // Linux and macOS.
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -48,13 +47,6 @@ sigset_t all_ending_signals() {
 
 std::string error_text(int error) {
     return std::system_category().message(error);
-}
-
-std::uint64_t random_number() {
-    std::uint64_t number = 0;
-    // The only errors are those of wrong arguments.
-    static_cast<void>(::getentropy(&number, sizeof number));
-    return number;
 }
 
 std::uint64_t memory_of_machine() {

@@ -9,7 +9,6 @@
 #include <windows.h>
 
 #include <algorithm>
-#include <random>
 #include <system_error>
 
 #include "operating_system.h"
@@ -55,12 +54,6 @@ OpenFile open_file(const std::filesystem::path& file, DWORD access, DWORD creati
 
 std::string error_text(int error) {
     return std::system_category().message(error);
-}
-
-std::uint64_t random_number() {
-    std::random_device random;  // That of the system.
-    const std::uint64_t high = random();
-    return high << 32 | random();
 }
 
 std::uint64_t memory_of_machine() {
