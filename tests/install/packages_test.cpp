@@ -12,6 +12,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "relief/version.h"
 #include "support/labels.h"
@@ -250,6 +251,32 @@ TEST(VcpkgPort, InstallsWhatFindPackageFinds) {
         prefix + "' && cmake --build build");
     EXPECT_THAT(run("build/engine && grep relief_DIR build/CMakeCache.txt"),
                 testing::AllOf(HasSubstr("normal"), HasSubstr(prefix + "/share/relief")));
+}
+
+/// Returns true if a file of the library, apart from readers and writers, includes such a header.
+bool library_includes(const std::string& begin) {
+    for (const char* folder : {"libmesh/include", "libmesh/src"}) {
+        for (const auto& entry :
+             std::filesystem::recursive_directory_iterator(source_directory() / folder)) {
+            const std::string path = entry.path().generic_string();
+            if (entry.is_regular_file() && path.find("/src/io/") == std::string::npos &&
+                read_bytes(entry.path()).find("#include <" + begin) != std::string::npos)
+                return true;
+        }
+    }
+    return false;
+}
+
+TEST(VcpkgPort, NeedsTheLibrariesThatTheSourcesInclude) {
+    const std::string port = text_of_source("packaging/vcpkg/relief/vcpkg.json");
+    const std::pair<const char*, const char*> libraries[] = {
+        {"eigen3", "Eigen/"},           {"embree", "embree"},      {"fmt", "fmt/"}, {"glm", "glm/"},
+        {"nlohmann-json", "nlohmann/"}, {"openmesh", "OpenMesh/"}, {"tbb", "tbb/"}};
+    for (const auto& [name, header] : libraries) {
+        EXPECT_EQ(port.find('"' + std::string(name) + '"') != std::string::npos,
+                  library_includes(header))
+            << name;
+    }
 }
 
 TEST(VcpkgPort, HasTheVersionOfTheSources) {

@@ -24,8 +24,8 @@
 /// with different outputs and reports.
 ///
 /// Results are the same bits as those of the C++ functions, for any number of threads.
-/// Tests: tests/mesh/c/c_mesh_test.cpp, tests/mesh/c/c_images_test.cpp,
-/// tests/mesh/c/c_usage_test.c.
+/// Tests: tests/mesh/c/c_mesh_test.cpp, c_images_test.cpp, c_bake_test.cpp,
+/// c_without_bake_test.cpp.
 #pragma once
 
 #include <stddef.h>
@@ -33,7 +33,11 @@
 
 #include "relief/version.h"
 
+#if defined(_WIN32)  // Libraries for Windows are static.
+#define RELIEF_C_API
+#else
 #define RELIEF_C_API __attribute__((visibility("default")))
+#endif
 
 // NOLINTBEGIN: the names of C.
 #ifdef __cplusplus
@@ -46,7 +50,8 @@ typedef enum relief_status {
     RELIEF_INVALID_INPUT = 1,  ///< Data or options are contradictory or out of range.
     RELIEF_CANCELLED = 2,      ///< The progress function requested it.
     RELIEF_OUT_OF_MEMORY = 3,
-    RELIEF_FAILED = 4  ///< Any other error, which relief_last_error() describes.
+    RELIEF_FAILED = 4,      ///< Any other error, which relief_last_error() describes.
+    RELIEF_UNAVAILABLE = 5  ///< The library was built without this function.
 } relief_status;
 
 /// Returns the version of the library, such as "1.1.0"; RELIEF_VERSION is that of this header.
@@ -474,7 +479,9 @@ RELIEF_C_API relief_status relief_bake_result_init(relief_bake_result* result, s
 /// \param maps  texels that are neither baked nor padded are flat, 0 high and open
 /// \param result  initialized; may be NULL
 /// \param report  counts problems of the meshes and missed texels
-/// \return RELIEF_INVALID_INPUT also if the bounding boxes of high and low meshes do not match
+/// \return RELIEF_INVALID_INPUT also if the bounding boxes of high and low meshes do not match;
+///         RELIEF_UNAVAILABLE for any arguments if the library was built with RELIEF_C_BAKE=OFF,
+///         without relief::bake and Embree
 RELIEF_C_API relief_status relief_bake(const relief_mesh* const* high, size_t high_count,
                                        const relief_mesh* low, const relief_bake_options* options,
                                        const relief_execution* execution,

@@ -5,39 +5,11 @@
 #include <vector>
 
 #include "c/c_call.h"
-#include "relief/mesh/bake.h"
 
 using namespace relief;
 using namespace relief::detail;
 
 namespace {
-
-constexpr std::array spaces = {VectorSpace::tangent, VectorSpace::object};
-constexpr std::array ray_directions = {RayDirections::averaged, RayDirections::shading,
-                                       RayDirections::face};
-
-relief_bake_options default_bake_options() {
-    const BakeOptions defaults;
-    const OcclusionOptions occlusion;
-    const FormatNumbers format = numbers_of({});
-    relief_bake_options options{};
-    options.offset = defaults.offset.value_or(RELIEF_ABSENT);
-    options.max_distance = defaults.max_distance.value_or(RELIEF_ABSENT);
-    options.hardness = defaults.hardness;
-    options.sample_angle = defaults.map.sample_angle.value_or(RELIEF_ABSENT);
-    options.occlusion_distance = occlusion.distance.value_or(RELIEF_ABSENT);
-    options.occlusion_rays = occlusion.rays;
-    options.samples = defaults.map.samples;
-    options.padding = defaults.map.padding;
-    options.space = number_of(defaults.space, spaces);
-    options.directions = number_of(defaults.directions, ray_directions);
-    options.take_back_faces = defaults.back_faces == BackFaces::take ? 1 : 0;
-    options.allow_size_mismatch = defaults.allow_size_mismatch ? 1 : 0;
-    options.green = format.green;
-    options.flat = format.flat;
-    options.dither = format.dither;
-    return options;
-}
 
 /// The images of the caller that are baked.
 class BakedImages {
@@ -138,8 +110,8 @@ BakeOptions bake_options(const relief_bake_options& given, const BakedImages& im
         options.map.layers.occlusion =
             OcclusionOptions{given.occlusion_rays, optional_value(given.occlusion_distance)};
     }
-    options.space = enumerator(given.space, spaces, "space");
-    options.directions = enumerator(given.directions, ray_directions, "directions");
+    options.space = enumerator(given.space, bake_spaces, "space");
+    options.directions = enumerator(given.directions, bake_ray_directions, "directions");
     options.hardness = given.hardness;
     options.offset = optional_value(given.offset);
     options.max_distance = optional_value(given.max_distance);
@@ -151,18 +123,6 @@ BakeOptions bake_options(const relief_bake_options& given, const BakedImages& im
 }
 
 }  // namespace
-
-relief_status relief_bake_options_init(relief_bake_options* options, size_t size) {
-    return init_struct(options, size, default_bake_options(), "relief_bake_options");
-}
-
-relief_status relief_bake_maps_init(relief_bake_maps* maps, size_t size) {
-    return init_struct(maps, size, {}, "relief_bake_maps");
-}
-
-relief_status relief_bake_result_init(relief_bake_result* result, size_t size) {
-    return init_struct(result, size, {}, "relief_bake_result");
-}
 
 relief_status relief_bake(const relief_mesh* const* high, size_t high_count, const relief_mesh* low,
                           const relief_bake_options* options, const relief_execution* execution,

@@ -51,6 +51,9 @@ relief_status status_of_exception() noexcept {
     } catch (const InvalidInput& error) {
         call_message.set(error.what());
         return RELIEF_INVALID_INPUT;
+    } catch (const Unavailable& error) {
+        call_message.set(error.what());
+        return RELIEF_UNAVAILABLE;
     } catch (const std::bad_alloc&) {
         call_message.shown = "out of memory";
         return RELIEF_OUT_OF_MEMORY;

@@ -14,8 +14,10 @@
 #include <deque>
 #include <glm/glm.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
+#include "relief/mesh/bake.h"
 #include "relief/mesh/buffers.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/image.h"
@@ -31,6 +33,12 @@ struct relief_report {  // NOLINT: the name of C.
 };
 
 namespace relief::detail {
+
+/// A function that this configuration of the library does not have.
+class Unavailable : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
 
 /// Clears the message of this thread.
 void begin_call() noexcept;
@@ -155,6 +163,12 @@ struct FormatNumbers {
     std::int32_t green, flat, dither;
 };
 FormatNumbers numbers_of(const NormalMapFormat& format);
+
+// The enumerators of relief_bake_options, and its defaults.
+inline constexpr std::array bake_spaces = {VectorSpace::tangent, VectorSpace::object};
+inline constexpr std::array bake_ray_directions = {RayDirections::averaged, RayDirections::shading,
+                                                   RayDirections::face};
+relief_bake_options default_bake_options();
 
 /// The execution of a call, which the progress function of the caller can cancel.
 class Execution {
