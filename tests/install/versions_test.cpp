@@ -122,6 +122,38 @@ TEST_F(Sources, BecomeAReleaseAndTheNextVersion) {
     EXPECT_EQ(shell("git tag --list").out, "v1.1.0\n");
 }
 
+/// Instead of CMake: its programs write the commit of their sources instead of figures.
+constexpr const char* cmake_stand_in = R"(#!/bin/sh
+[ "$1" = --preset ] || exit 0
+mkdir -p "$4/bin"
+cat >"$4/bin/relief-accuracy" <<END
+#!/bin/sh
+[ "\$1" = compare ] && exec cat "\$2" "\$3"
+mkdir "\$4" && echo figures of $(git rev-parse HEAD) >"\$4/accuracy.json"
+END
+chmod +x "$4/bin/relief-accuracy"
+)";
+
+TEST_F(Sources, AreCheckedAndComparedWithThePreviousVersion) {
+    create_directories(folder / "bin");
+    std::ofstream(folder / "bin/cmake") << cmake_stand_in;
+    std::ofstream(root / "scripts/ci") << "#!/bin/sh\n[ ! -e ../ci-fails ]\n";
+    ASSERT_EQ(shell("chmod +x ../bin/cmake scripts/ci").exit_code, 0);
+    make_checkout();
+    ASSERT_EQ(
+        shell("git tag v1.0.0; git commit -q --allow-empty -m second; touch ../ci-fails").exit_code,
+        0);
+    const std::string release =
+        "PATH=$PWD/../bin:$PATH scripts/dev/release 1.1.0 --without packages,site";
+    EXPECT_THAT(shell(release).error, HasSubstr("error: scripts/ci failed"));
+    EXPECT_EQ(shell("git tag; rm ../ci-fails").out, "v1.0.0\n");
+    const ProgramResult result = shell(release);
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out,
+                HasSubstr(shell("git log --reverse --format='figures of %H' | head -n 2").out));
+    EXPECT_EQ(shell("git tag; git worktree list | wc -l").out, "v1.0.0\nv1.1.0\n1\n");
+}
+
 TEST_F(Sources, ThatAreNotReadyAreNoRelease) {
     const std::string release = "scripts/dev/release 1.1.0 --without ci,figures,packages,site";
     write_changelog("One sentence.\n- A change.\n");
