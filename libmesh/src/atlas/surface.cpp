@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "geometry/direction.h"
+#include "geometry/edge_pairs.h"
 #include "geometry/value_order.h"
 #include "geometry/weld.h"
 #include "portable_math.h"
@@ -16,9 +17,6 @@ namespace relief::detail {
 namespace {
 
 constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
-
-/// The number of triangles at one edge up to which all pairs are compared for each join.
-constexpr std::size_t max_compared = 64;
 
 /// Spreads the lowest 21 bits to every third bit.
 std::uint64_t spread(std::uint64_t x) {
@@ -170,96 +168,39 @@ class EdgeJoiner {
 
     /// \param corners  the edges between two vertices, in both directions
     void join(std::span<const Corner> corners) {
-        forward_.clear();
-        backward_.clear();
-        for (const Corner corner : corners) {
-            const bool ascends = vertex_of(corner) < vertex_of(next_in_triangle(corner));
-            (ascends ? forward_ : backward_).push_back(corner);
-        }
-        if (forward_.size() == 1 && backward_.size() == 1) {
-            connect(forward_[0], backward_[0]);
+        if (corners.size() == 2 && ascends(corners[0]) != ascends(corners[1])) {
+            connect(corners[0], corners[1]);
             return;
         }
-        if (corners.size() > 1)
-            report_.add("edge of more than two triangles, or of two in one direction", "face",
-                        triangle_of(corners[0]), "joins the flattest pairs; the others are cut");
-        if (corners.size() <= max_compared) {
-            while (connect_flattest()) {
-            }
-        } else {
-            connect_mutual();
+        if (corners.size() == 1) return;
+        report_.add("edge of more than two triangles, or of two in one direction", "face",
+                    triangle_of(corners[0]), "joins the flattest pairs; the others are cut");
+        triangles_.clear();
+        for (const Corner corner : corners) {
+            const glm::dvec3 edge =
+                surface_.position(next_in_triangle(corner)) - surface_.position(corner);
+            triangles_.push_back({corner, ascends(corner),
+                                  outward_from(surface_.normals[triangle_of(corner)], edge),
+                                  corner});
         }
+        for (const auto& [a, b] : pairs_.join(triangles_))
+            connect(a, b);
     }
 
   private:
-    [[nodiscard]] std::uint32_t vertex_of(Corner corner) const {
-        return surface_.faces[corner / 3][static_cast<glm::length_t>(corner % 3)];
+    [[nodiscard]] bool ascends(Corner corner) const {
+        return vertex_of(corner, surface_.faces) <
+               vertex_of(next_in_triangle(corner), surface_.faces);
     }
     void connect(Corner a, Corner b) {
         surface_.opposite[a] = b;
         surface_.opposite[b] = a;
     }
-    /// The direction of a face away from its edge, in its plane.
-    [[nodiscard]] glm::dvec3 outward(Corner corner) const {
-        const glm::dvec3 edge =
-            surface_.position(next_in_triangle(corner)) - surface_.position(corner);
-        const glm::dvec3 across = glm::cross(surface_.normals[corner / 3], edge);
-        const double length = std::sqrt(glm::dot(across, across));
-        return length > 0.0 ? across / length : glm::dvec3(0.0);
-    }
-    [[nodiscard]] double flatness(Corner a, Corner b) const {
-        return -glm::dot(outward(a), outward(b));
-    }
-    bool connect_flattest() {
-        double best = -2.0;
-        std::size_t best_i = 0;
-        std::size_t best_j = 0;
-        for (std::size_t i = 0; i < forward_.size(); ++i) {
-            for (std::size_t j = 0; j < backward_.size(); ++j) {
-                const double value = flatness(forward_[i], backward_[j]);
-                if (value <= best) continue;
-                best = value;
-                best_i = i;
-                best_j = j;
-            }
-        }
-        if (best < -1.5) return false;
-        connect(forward_[best_i], backward_[best_j]);
-        forward_.erase(forward_.begin() + static_cast<std::ptrdiff_t>(best_i));
-        backward_.erase(backward_.begin() + static_cast<std::ptrdiff_t>(best_j));
-        return true;
-    }
-    /// Joins faces that are each other's flattest partner.
-    void connect_mutual() {
-        const auto directions = [&](const std::vector<Corner>& corners) {
-            std::vector<glm::dvec3> result;
-            for (const Corner corner : corners)
-                result.push_back(outward(corner));
-            return result;
-        };
-        const std::vector<glm::dvec3> ahead = directions(forward_);
-        const std::vector<glm::dvec3> back = directions(backward_);
-        const auto best = [](const glm::dvec3& direction, const std::vector<glm::dvec3>& others) {
-            std::size_t index = 0;
-            double value = 2.0;
-            for (std::size_t i = 0; i < others.size(); ++i) {
-                const double each = glm::dot(direction, others[i]);
-                if (each >= value) continue;
-                value = each;
-                index = i;
-            }
-            return index;
-        };
-        if (back.empty()) return;
-        for (std::size_t i = 0; i < ahead.size(); ++i) {
-            const std::size_t j = best(ahead[i], back);
-            if (best(back[j], ahead) == i) connect(forward_[i], backward_[j]);
-        }
-    }
 
     AtlasSurface& surface_;
     Report& report_;
-    std::vector<Corner> forward_, backward_;
+    std::vector<TriangleAtEdge> triangles_;
+    EdgePairs pairs_;
 };
 
 void join_faces(AtlasSurface& surface, Report& report) {
