@@ -46,16 +46,17 @@ py::array_t<std::int32_t> charts_of(const std::vector<std::optional<std::uint32_
 }
 
 py::dict py_unwrap(const MeshObject& mesh, std::pair<int, int> size, int padding, int align,
-                   std::optional<double> texels_per_unit, double max_stretch,
-                   std::optional<double> split_hard_degrees, bool split_materials, bool keep_seams,
-                   const py::object& densities, bool stack, bool repack, bool fix_mirrored,
-                   int udim, const FindingList& report) {
+                   std::optional<double> texels_per_unit, const std::string& flatten,
+                   double max_stretch, std::optional<double> split_hard_degrees,
+                   bool split_materials, bool keep_seams, const py::object& densities, bool stack,
+                   bool repack, bool fix_mirrored, int udim, const FindingList& report) {
     Report findings;
     UnwrapOptions options;
     options.size = {size.first, size.second};
     options.padding = padding;
     options.alignment = align;
     options.texels_per_unit = texels_per_unit;
+    options.flattening = value_of<Flattening>(flatten, "flatten");
     options.max_stretch = max_stretch;
     if (split_hard_degrees) options.split_hard = *split_hard_degrees * std::numbers::pi / 180.0;
     options.split_materials = split_materials;
@@ -113,14 +114,15 @@ py::dict py_measure_texcoords(const MeshObject& mesh, std::pair<int, int> size,
 void add_unwrap(py::module_& module) {
     using py::arg;
     const py::object none = py::none();
-    module.def(
-        "unwrap", &py_unwrap, arg("mesh"), py::kw_only(), arg("size") = std::pair(2048, 2048),
-        arg("padding") = 4, arg("align") = 1, arg("texels_per_unit") = none,
-        arg("max_stretch") = 4.0, arg("split_hard_degrees") = none, arg("split_materials") = false,
-        arg("keep_seams") = false, arg("densities") = none, arg("stack") = false,
-        arg("repack") = false, arg("fix_mirrored") = false, arg("udim") = 1, arg("report") = none,
-        "Compute texture coordinates without overlaps.\n\n"
-        "See relief.unwrap() for the result.");
+    module.def("unwrap", &py_unwrap, arg("mesh"), py::kw_only(),
+               arg("size") = std::pair(2048, 2048), arg("padding") = 4, arg("align") = 1,
+               arg("texels_per_unit") = none, arg("flatten") = "arap", arg("max_stretch") = 4.0,
+               arg("split_hard_degrees") = none, arg("split_materials") = false,
+               arg("keep_seams") = false, arg("densities") = none, arg("stack") = false,
+               arg("repack") = false, arg("fix_mirrored") = false, arg("udim") = 1,
+               arg("report") = none,
+               "Compute texture coordinates without overlaps.\n\n"
+               "See relief.unwrap() for the result.");
     module.def(
         "measure_texcoords", &py_measure_texcoords, arg("mesh"), arg("size"), py::kw_only(),
         arg("report") = none,

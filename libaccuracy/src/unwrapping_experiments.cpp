@@ -195,10 +195,12 @@ std::vector<UnwrappingMethod> chart_methods(int size) {
     std::vector<UnwrappingMethod> methods = {{"existing charts", "--repack", usual, true},
                                              {"default", "none", usual},
                                              {"keep seams", "--keep-seams", usual, true},
+                                             {"conformal", "--flatten conformal", usual},
                                              {"split hard edges", "--split-hard 30", usual}};
     methods[0].options.repack = true;
     methods[2].options.keep_seams = true;
-    methods[3].options.split_hard = std::numbers::pi / 6.0;
+    methods[3].options.flattening = Flattening::conformal;
+    methods[4].options.split_hard = std::numbers::pi / 6.0;
     for (const double limit : {1.5, 1.2, 1.1}) {
         methods.push_back(
             {fmt::format("within {}", limit), fmt::format("--max-stretch {}", limit), usual});
@@ -226,9 +228,11 @@ std::vector<UnwrappingMethod> packing_methods(int size) {
 }
 
 std::string note_on(const AtlasStats& stats) {
-    return fmt::format("{} {}, {:.1f} % used, seams {:.3g} times the root of the area",
-                       stats.charts, stats.charts == 1 ? "chart" : "charts", 100.0 * stats.used,
-                       stats.relative_seam_length);
+    return fmt::format(
+        "{} {}, {:.1f} % used, seams {:.3g} times the root of the area, mean ratio of scales "
+        "{:.3f}",
+        stats.charts, stats.charts == 1 ? "chart" : "charts", 100.0 * stats.used,
+        stats.relative_seam_length, stats.mean_anisotropy);
 }
 
 /// Sets all but the errors and the work of methods.

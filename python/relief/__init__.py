@@ -190,6 +190,7 @@ def unwrap(
     padding: int = 4,
     align: int = 1,
     texels_per_unit: float | None = None,
+    flatten: Literal["arap", "conformal"] = "arap",
     max_stretch: float = 4.0,
     split_hard_degrees: float | None = None,
     split_materials: bool = False,
@@ -204,8 +205,8 @@ def unwrap(
     """Compute texture coordinates for a map of `size` (width, height), without overlapping or mirrored triangles.
 
     The options are those of `relief-mesh unwrap`: `padding` is the least distance of charts in texels, 0 to 256; no
-    two charts share a block of `align` x `align` texels; `max_stretch`, above 1, limits the ratio of a triangle's two
-    scales; `split_hard_degrees` puts seams at sharper edges where they separate charts. Tangents are removed, and
+    two charts share a block of `align` x `align` texels; `flatten` says whether charts keep lengths ("arap") or angles
+    ("conformal"); `max_stretch`, above 1, limits the ratio of a triangle's two scales; `split_hard_degrees` puts seams at sharper edges where they separate charts. Tangents are removed, and
     old texture coordinates matter only with `keep_seams` and `repack`. `densities`, float32 (m,), are the relative
     densities of texels of the triangles. With `stack`, equal parts share texels. With `repack`, the old charts are
     only packed anew; `fix_mirrored` reflects mirrored ones. `udim` is the number of maps of this size, as tiles.
@@ -214,9 +215,9 @@ def unwrap(
     Raises InvalidInput for wrong options, or if the charts do not fit into the map, and TypeError for wrong types.
     """
     return Unwrapped(**_relief.unwrap(
-        mesh, size=size, padding=padding, align=align, texels_per_unit=texels_per_unit, max_stretch=max_stretch,
-        split_hard_degrees=split_hard_degrees, split_materials=split_materials, keep_seams=keep_seams, densities=densities,
-        stack=stack, repack=repack, fix_mirrored=fix_mirrored, udim=udim, report=report))
+        mesh, size=size, padding=padding, align=align, texels_per_unit=texels_per_unit, flatten=flatten,
+        max_stretch=max_stretch, split_hard_degrees=split_hard_degrees, split_materials=split_materials,
+        keep_seams=keep_seams, densities=densities, stack=stack, repack=repack, fix_mirrored=fix_mirrored, udim=udim, report=report))
 
 
 class ToolError(Error):

@@ -316,6 +316,7 @@ def unwrap(
     padding: int = 4,
     align: int = 1,
     texels_per_unit: float | None = None,
+    flatten: Literal["arap", "conformal"] = "arap",
     max_stretch: float = 4.0,
     split_hard_degrees: float | None = None,
     split_materials: bool = False,

@@ -153,7 +153,7 @@ class MeshTools(CommandLineCase):
 class Unwrapping(CommandLineCase):
     def test_unwrap(self):
         file, out = DATA / "urn-low.obj", self.folder / "out.ply"
-        for options, words in (({}, []),
+        for options, words in (({}, []), ({"flatten": "conformal"}, ["--flatten", "conformal"]),
                                ({"padding": 8, "align": 4, "max_stretch": 1.5, "split_hard_degrees": 40.0,
                                  "keep_seams": True},
                                 ["--padding", "8", "--align", "4", "--max-stretch", "1.5", "--split-hard", "40",

@@ -131,6 +131,7 @@ Json options_json(const UnwrapCommand& command) {
                  {"align", options.alignment},
                  {"udim", options.tiles},
                  {"density", command.density_text},
+                 {"flatten", enum_name(options.flattening)},
                  {"max_stretch", options.max_stretch},
                  {"split_materials", options.split_materials},
                  {"keep_seams", options.keep_seams},
@@ -146,8 +147,8 @@ Json options_json(const UnwrapCommand& command) {
 
 /// Refuses options of new charts with --repack.
 void refuse_new_charts(const CLI::App& app) {
-    for (const char* option : {"--max-stretch", "--split-hard", "--split-materials", "--keep-seams",
-                               "--density", "--stack"}) {
+    for (const char* option : {"--flatten", "--max-stretch", "--split-hard", "--split-materials",
+                               "--keep-seams", "--density", "--stack"}) {
         if (is_given(app, option))
             throw UsageError(
                 fmt::format("{}: has no effect with --repack, which keeps charts", option));
@@ -346,6 +347,10 @@ void add_unwrap_options(CLI::App& app, UnwrapCommand& command) {
                "stay, although they do not fit any more, which is a finding.")
         .group(map);
     const std::string charts = "Charts";
+    add_choice(app, "--flatten", command.options.flattening, enum_choices<Flattening>(),
+               "What charts keep: lengths as far as possible (arap), or angles (conformal), which "
+               "makes the density of texels less even. Default: arap.")
+        .group(charts);
     add_number(
         app, "--max-stretch", "S", command.options.max_stretch, {1.01, 1000.0, ""},
         "The largest ratio of a triangle's two scales, and of its areas, 1.01 to 1000; charts "
@@ -389,6 +394,7 @@ void add_unwrap_options(CLI::App& app, UnwrapCommand& command) {
                        "--align 4 --picture out/vase-charts.png --picture-shows stretch",
                        "relief-mesh unwrap data/vase.obj out/vase-tiles.obj --size 512 --udim 4 "
                        "--report out/vase-tiles.json",
+                       "relief-mesh unwrap data/vase.obj out/vase-angles.obj --flatten conformal",
                        "relief-mesh unwrap data/vase.obj out/vase-dense.obj --density bricks=2 "
                        "--texels-per-unit 100 --stack",
                        "relief-mesh unwrap data/vase.obj out/vase-seams.glb --keep-seams "

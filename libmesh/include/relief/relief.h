@@ -253,6 +253,12 @@ RELIEF_C_API relief_status relief_split_vertices(const relief_mesh* mesh,
                                                  uint32_t* indices, uint32_t* source_vertices,
                                                  size_t capacity, size_t* vertex_count);
 
+/// What charts keep in the map, as Flattening (relief/mesh/unwrap.h).
+enum relief_flattening {
+    RELIEF_FLATTENING_ARAP = 0,      ///< Lengths: as rigid as possible.
+    RELIEF_FLATTENING_CONFORMAL = 1  ///< Angles.
+};
+
 /// Options of relief_unwrap(), as UnwrapOptions (relief/mesh/unwrap.h).
 typedef struct relief_unwrap_options {
     size_t size;
@@ -264,7 +270,7 @@ typedef struct relief_unwrap_options {
     double split_hard;       ///< Angle, 0 to pi. Default: RELIEF_ABSENT.
     double texels_per_unit;  ///< Above 0. Default: RELIEF_ABSENT, as many as fit.
     int32_t keep_seams;      ///< Not 0: seams of the mesh's texture coordinates stay. Default: 0.
-    int32_t reserved;        ///< 0
+    int32_t flattening;      ///< relief_flattening. Default: RELIEF_FLATTENING_ARAP.
 } relief_unwrap_options;
 RELIEF_C_API relief_status relief_unwrap_options_init(relief_unwrap_options* options, size_t size);
 

@@ -124,14 +124,17 @@ class ChartFlattener {
             chart.coordinates = std::move(projection);
             return std::nullopt;
         }
-        std::vector<glm::dvec2> flat = detail::flattened(surface_, chart.mesh, projection);
+        std::vector<glm::dvec2> flat =
+            detail::flattened(surface_, chart.mesh, projection, limits_.method);
         const std::optional<std::uint32_t> problem =
             problem_of(chart.mesh, flat, limits_.max_stretch);
         if (!problem) {
             chart.coordinates = std::move(flat);
             return std::nullopt;
         }
-        if (!problem_of(chart.mesh, projection, limits_.max_stretch)) {
+        // A projection keeps no angles.
+        if (limits_.method != Flattening::conformal &&
+            !problem_of(chart.mesh, projection, limits_.max_stretch)) {
             chart.coordinates = std::move(projection);
             return std::nullopt;
         }

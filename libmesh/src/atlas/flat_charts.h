@@ -26,8 +26,9 @@ struct FlatChart {
     double area = 0.0;  ///< Of the surface.
 };
 
-/// The limits of a chart in the plane.
+/// How charts are flattened, and the limits of a chart in the plane.
 struct FlatnessLimits {
+    Flattening method = Flattening::arap;
     /// The largest permitted ratio of a triangle's singular values, and of its areas.
     double max_stretch = 4.0;
     /// Lattice units of a unit of the surface.

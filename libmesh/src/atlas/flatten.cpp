@@ -8,16 +8,24 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
 
 #include "geometry/direction.h"
+#include "portable_math.h"
 #include "progress_stage.h"
 
 namespace relief::detail {
 namespace {
 
-constexpr int iterations = 8;
+/// The number of iterations. Angles gain by more of them, lengths do not.
+constexpr int rigid_iterations = 8;
+constexpr int conformal_iterations = 16;
 constexpr double min_weight = 0.02;
 constexpr double max_weight = 20.0;
+/// The largest logarithm of the scale of a conformal map; the stretch limit is far below it.
+constexpr double max_log_scale = 20.0;
 
 /// The corners of a triangle in its own plane: the first one at the origin, the second one on the
 /// x axis.
@@ -26,6 +34,9 @@ struct FlatTriangle {
 
     [[nodiscard]] std::array<glm::dvec2, 3> corners() const {
         return {glm::dvec2(0.0), glm::dvec2(x1, 0.0), glm::dvec2(x2, y2)};
+    }
+    [[nodiscard]] FlatTriangle scaled(double factor) const {
+        return {factor * x1, factor * x2, factor * y2};
     }
 };
 
@@ -37,17 +48,25 @@ FlatTriangle flat(const AtlasSurface& surface, std::uint32_t face) {
     return {length, glm::dot(e1, e2) / length, 2.0 * surface.areas[face] / length};
 }
 
-/// Returns, for each edge of a triangle, the cotangent of the angle that it faces, within limits.
-std::array<double, 3> weights_of(const FlatTriangle& triangle) {
+using Cotangents = std::array<double, 3>;
+
+/// Returns, for each edge of a triangle, the cotangent of the angle that it faces.
+Cotangents cotangents_of(const FlatTriangle& triangle) {
     const std::array<glm::dvec2, 3> p = triangle.corners();
     const double twice_area = triangle.x1 * triangle.y2;
-    std::array<double, 3> weights{};
+    Cotangents cotangents{};
     for (std::size_t i = 0; i < 3; ++i) {
         const glm::dvec2& apex = p[(i + 2) % 3];
-        const double cotangent = glm::dot(p[i] - apex, p[(i + 1) % 3] - apex) / twice_area;
-        weights[i] = std::clamp(cotangent, min_weight, max_weight);
+        cotangents[i] = glm::dot(p[i] - apex, p[(i + 1) % 3] - apex) / twice_area;
     }
-    return weights;
+    return cotangents;
+}
+
+/// Positive weights: they stay within limits.
+Cotangents limited(Cotangents cotangents) {
+    for (double& each : cotangents)
+        each = std::clamp(each, min_weight, max_weight);
+    return cotangents;
 }
 
 /// The two axes of a plane, counter-clockwise seen against the normal.
@@ -57,22 +76,219 @@ std::array<glm::dvec3, 2> axes_of(const glm::dvec3& normal) {
     return {x, glm::cross(normal, x)};
 }
 
-/// Solves L D L^T x = b for both coordinates. \param lower L below its diagonal of ones
-void solve(const Eigen::SparseMatrix<double>& lower, const Eigen::VectorXd& diagonal,
-           std::span<glm::dvec2> x) {
-    using Entry = Eigen::SparseMatrix<double>::InnerIterator;
-    const Eigen::Index count = lower.cols();
-    for (Eigen::Index column = 0; column < count; ++column) {
-        const glm::dvec2 value = x[static_cast<std::size_t>(column)];
-        for (Entry entry(lower, column); entry; ++entry)
-            x[static_cast<std::size_t>(entry.row())] -= entry.value() * value;
+/// A symmetric matrix with positive eigenvalues, which is factored once.
+class FactoredMatrix {
+  public:
+    /// \param entries  of the lower half with the diagonal; equal places add up
+    FactoredMatrix(std::vector<Eigen::Triplet<double>> entries, std::size_t size) : work_(size) {
+        const auto count = static_cast<Eigen::Index>(size);
+        Matrix matrix(count, count);
+        matrix.setFromTriplets(entries.begin(), entries.end());
+        entries = {};
+        check_cancelled();
+        solver_.compute(matrix);
     }
-    for (Eigen::Index column = count - 1; column >= 0; --column) {
-        glm::dvec2 value = x[static_cast<std::size_t>(column)] / diagonal(column);
-        for (Entry entry(lower, column); entry; ++entry)
-            value -= entry.value() * x[static_cast<std::size_t>(entry.row())];
-        x[static_cast<std::size_t>(column)] = value;
+    [[nodiscard]] bool is_valid() const { return solver_.info() == Eigen::Success; }
+
+    /// Replaces the right side by the solution, for two of them at once: reading the factor costs
+    /// most.
+    void solve(std::span<glm::dvec2> values) {
+        const auto& order = solver_.permutationP().indices();
+        for (std::size_t i = 0; i < values.size(); ++i)
+            work_[position(order, i)] = values[i];
+        solve_permuted();
+        for (std::size_t i = 0; i < values.size(); ++i)
+            values[i] = work_[position(order, i)];
     }
+
+  private:
+    using Matrix = Eigen::SparseMatrix<double>;
+
+    template <typename Order>
+    static std::size_t position(const Order& order, std::size_t i) {
+        return static_cast<std::size_t>(order(static_cast<Eigen::Index>(i)));
+    }
+    /// Solves L D L^T x = b, in which the diagonal of L is 1.
+    void solve_permuted() {
+        using Entry = Matrix::InnerIterator;
+        const Matrix& lower = solver_.matrixL().nestedExpression();
+        const Eigen::Index count = lower.cols();
+        for (Eigen::Index column = 0; column < count; ++column) {
+            const glm::dvec2 value = work_[static_cast<std::size_t>(column)];
+            for (Entry entry(lower, column); entry; ++entry)
+                work_[static_cast<std::size_t>(entry.row())] -= entry.value() * value;
+        }
+        const Eigen::VectorXd diagonal = solver_.vectorD();
+        for (Eigen::Index column = count - 1; column >= 0; --column) {
+            glm::dvec2 value = work_[static_cast<std::size_t>(column)] / diagonal(column);
+            for (Entry entry(lower, column); entry; ++entry)
+                value -= entry.value() * work_[static_cast<std::size_t>(entry.row())];
+            work_[static_cast<std::size_t>(column)] = value;
+        }
+    }
+
+    Eigen::SimplicialLDLT<Matrix> solver_;
+    std::vector<glm::dvec2> work_;
+};
+
+/// Builds the matrix of sum w (x_a - x_b)^2 over the edges of triangles.
+class EdgeMatrix {
+  public:
+    EdgeMatrix(std::size_t size, std::size_t edges) : diagonal_(size, 0.0) {
+        entries_.reserve(edges + size);
+    }
+    void add_edge(std::uint32_t a, std::uint32_t b, double weight) {
+        entries_.emplace_back(static_cast<int>(std::max(a, b)), static_cast<int>(std::min(a, b)),
+                              -weight);
+        add(a, weight);
+        add(b, weight);
+    }
+    void add(std::uint32_t i, double weight) { diagonal_[i] += weight; }
+
+    /// Factors the matrix; the builder is empty afterwards.
+    FactoredMatrix factored() {
+        for (std::size_t i = 0; i < diagonal_.size(); ++i)
+            entries_.emplace_back(static_cast<int>(i), static_cast<int>(i), diagonal_[i]);
+        return {std::move(entries_), diagonal_.size()};
+    }
+
+  private:
+    std::vector<Eigen::Triplet<double>> entries_;
+    std::vector<double> diagonal_;
+};
+
+// The scale of a conformal map.
+
+constexpr double pi = std::numbers::pi;
+constexpr std::uint32_t fixed = std::numeric_limits<std::uint32_t>::max();
+
+/// The unknowns of the scale: one for each inner vertex, and one for all vertices of a border loop,
+/// except for the longest loop, where the scale is fixed.
+struct ScaleUnknowns {
+    std::vector<std::uint32_t> of_vertex;  ///< Or `fixed`.
+    /// The curvature of each unknown, if all angles at its vertices were 0.
+    std::vector<double> full_curvature;
+    std::vector<bool> is_border;  ///< Of each vertex.
+};
+
+ScaleUnknowns scale_unknowns(const AtlasSurface& surface, const ChartMesh& chart) {
+    struct Loop {
+        std::vector<std::uint32_t> vertices;
+        double length = 0.0;
+    };
+    // Each vertex begins one edge of the border at most.
+    std::vector<Corner> border_edge(chart.positions.size(), no_corner);
+    const auto vertex_at = [&](Corner corner) {
+        return chart.vertices[corner / 3][static_cast<glm::length_t>(corner % 3)];
+    };
+    for (Corner corner = 0; corner < chart.opposite.size(); ++corner)
+        if (chart.opposite[corner] == no_corner) border_edge[vertex_at(corner)] = corner;
+    ScaleUnknowns unknowns;
+    unknowns.is_border.assign(chart.positions.size(), false);
+    std::vector<Loop> loops;
+    for (std::uint32_t first = 0; first < border_edge.size(); ++first) {
+        if (border_edge[first] == no_corner || unknowns.is_border[first]) continue;
+        Loop& loop = loops.emplace_back();
+        for (std::uint32_t v = first; !unknowns.is_border[v];) {
+            unknowns.is_border[v] = true;
+            loop.vertices.push_back(v);
+            const Corner edge = border_edge[v];
+            loop.length += surface.edge_length(3 * chart.faces[edge / 3] + edge % 3);
+            v = vertex_at(next_in_triangle(edge));
+        }
+    }
+    unknowns.of_vertex.assign(chart.positions.size(), fixed);
+    for (std::size_t v = 0; v < chart.positions.size(); ++v) {
+        if (unknowns.is_border[v]) continue;
+        unknowns.of_vertex[v] = static_cast<std::uint32_t>(unknowns.full_curvature.size());
+        unknowns.full_curvature.push_back(2.0 * pi);
+    }
+    const auto longest =
+        std::max_element(loops.begin(), loops.end(),
+                         [](const Loop& a, const Loop& b) { return a.length < b.length; });
+    for (auto loop = loops.begin(); loop != loops.end(); ++loop) {
+        if (loop == longest) continue;
+        for (const std::uint32_t v : loop->vertices)
+            unknowns.of_vertex[v] = static_cast<std::uint32_t>(unknowns.full_curvature.size());
+        // As if a plane polygon closed the hole.
+        unknowns.full_curvature.push_back((2.0 + static_cast<double>(loop->vertices.size())) * pi);
+    }
+    return unknowns;
+}
+
+/// Returns the factor by which a conformal map scales each triangle: the one that is 1 at the
+/// longest border loop and constant at all others, which changes areas least.
+///
+/// \return none if rounding makes it infinite
+std::optional<std::vector<double>> conformal_scales(const AtlasSurface& surface,
+                                                    const ChartMesh& chart,
+                                                    std::span<const FlatTriangle> triangles) {
+    const ScaleUnknowns unknowns = scale_unknowns(surface, chart);
+    const std::size_t count = unknowns.full_curvature.size();
+    std::vector<double> scales(triangles.size(), 1.0);
+    if (count == 0 || std::find(unknowns.is_border.begin(), unknowns.is_border.end(), true) ==
+                          unknowns.is_border.end())
+        return scales;
+    // L u = -K: u is the logarithm of the scale, K the integral of curvature [Sawhney and Crane
+    // 2017, equation 4].
+    EdgeMatrix matrix(count, 3 * triangles.size());
+    std::vector<glm::dvec2> logarithm(count, glm::dvec2(0.0));
+    for (std::size_t i = 0; i < count; ++i)
+        logarithm[i].x = -unknowns.full_curvature[i];
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const glm::uvec3& v = chart.vertices[i];
+        const Cotangents cotangents = cotangents_of(triangles[i]);
+        // Needles would dominate the matrix.
+        const bool is_needle = std::any_of(cotangents.begin(), cotangents.end(),
+                                           [](double each) { return std::abs(each) > max_weight; });
+        const Cotangents weights = is_needle ? limited(cotangents) : cotangents;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto unknown = [&](std::size_t corner) {
+                return unknowns.of_vertex[v[static_cast<glm::length_t>(corner % 3)]];
+            };
+            const std::uint32_t a = unknown(k);
+            const std::uint32_t b = unknown(k + 1);
+            if (a != b && a != fixed && b != fixed)
+                matrix.add_edge(a, b, 0.5 * weights[k]);
+            else if (a != b)
+                matrix.add(std::min(a, b), 0.5 * weights[k]);
+            // The angle at the corner that the edge faces.
+            const std::uint32_t apex = unknown(k + 2);
+            if (apex != fixed) logarithm[apex].x += portable::atan2(1.0, cotangents[k]);
+        }
+    }
+    FactoredMatrix factored = matrix.factored();
+    if (!factored.is_valid()) return std::nullopt;
+    factored.solve(logarithm);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const auto of = [&](std::uint32_t vertex) {
+            const std::uint32_t unknown = unknowns.of_vertex[vertex];
+            return unknown == fixed ? 0.0 : logarithm[unknown].x;
+        };
+        const glm::uvec3& v = chart.vertices[i];
+        const double mean = (of(v.x) + of(v.y) + of(v.z)) / 3.0;
+        if (!(std::abs(mean) < max_log_scale)) return std::nullopt;
+        scales[i] = portable::exp(mean);
+    }
+    return scales;
+}
+
+/// Scales coordinates, so that the chart has the area of its faces.
+void restore_area(const AtlasSurface& surface, const ChartMesh& chart,
+                  std::span<glm::dvec2> coordinates) {
+    double wanted = 0.0;
+    double area = 0.0;
+    for (std::size_t i = 0; i < chart.faces.size(); ++i) {
+        const glm::uvec3& v = chart.vertices[i];
+        const glm::dvec2 first = coordinates[v.y] - coordinates[v.x];
+        const glm::dvec2 second = coordinates[v.z] - coordinates[v.x];
+        wanted += surface.areas[chart.faces[i]];
+        area += 0.5 * (first.x * second.y - first.y * second.x);
+    }
+    if (!(area > 0.0)) return;  // Triangles are inverted, which the tests of charts find.
+    const double scale = std::sqrt(wanted / area);
+    for (glm::dvec2& each : coordinates)
+        each *= scale;
 }
 
 }  // namespace
@@ -131,42 +347,33 @@ std::vector<glm::dvec2> projected(const AtlasSurface& surface, const ChartMesh& 
 }
 
 std::vector<glm::dvec2> flattened(const AtlasSurface& surface, const ChartMesh& chart,
-                                  std::vector<glm::dvec2> start) {
-    using Matrix = Eigen::SparseMatrix<double>;
+                                  std::vector<glm::dvec2> start, Flattening method) {
     const std::size_t face_count = chart.faces.size();
-    const auto vertex_count = static_cast<Eigen::Index>(chart.positions.size());
     std::vector<FlatTriangle> triangles(face_count);
-    std::vector<std::array<double, 3>> weights(face_count);
-    std::vector<double> diagonal(chart.positions.size(), 0.0);
-    std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(3 * face_count + chart.positions.size());
-    for (std::size_t i = 0; i < face_count; ++i) {
+    for (std::size_t i = 0; i < face_count; ++i)
         triangles[i] = flat(surface, chart.faces[i]);
-        weights[i] = weights_of(triangles[i]);
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t a = chart.vertices[i][static_cast<glm::length_t>(k)];
-            const std::uint32_t b = chart.vertices[i][static_cast<glm::length_t>((k + 1) % 3)];
-            entries.emplace_back(static_cast<int>(std::max(a, b)), static_cast<int>(std::min(a, b)),
-                                 -weights[i][k]);
-            diagonal[a] += weights[i][k];
-            diagonal[b] += weights[i][k];
-        }
+    if (method == Flattening::conformal) {
+        const auto scales = conformal_scales(surface, chart, triangles);
+        if (!scales) return std::vector<glm::dvec2>(start.size(), glm::dvec2(0.0));
+        for (std::size_t i = 0; i < face_count; ++i)
+            triangles[i] = triangles[i].scaled((*scales)[i]);
     }
-    diagonal[0] += 1.0;  // Attracts one vertex to the origin, which fixes the translation.
-    for (int v = 0; v < vertex_count; ++v)
-        entries.emplace_back(v, v, diagonal[static_cast<std::size_t>(v)]);
-    Matrix matrix(vertex_count, vertex_count);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    entries = {};
-    check_cancelled();
-    const Eigen::SimplicialLDLT<Matrix> solver(matrix);
-    if (solver.info() != Eigen::Success) return start;
-    const Matrix& factor = solver.matrixL().nestedExpression();
-    const auto& order = solver.permutationP().indices();
-    const Eigen::VectorXd diagonal_factor = solver.vectorD();
+    std::vector<Cotangents> weights(face_count);
+    EdgeMatrix matrix(chart.positions.size(), 3 * face_count);
+    for (std::size_t i = 0; i < face_count; ++i) {
+        weights[i] = limited(cotangents_of(triangles[i]));
+        for (std::size_t k = 0; k < 3; ++k)
+            matrix.add_edge(chart.vertices[i][static_cast<glm::length_t>(k)],
+                            chart.vertices[i][static_cast<glm::length_t>((k + 1) % 3)],
+                            weights[i][k]);
+    }
+    matrix.add(0, 1.0);  // Attracts one vertex to the origin, which fixes the translation.
+    FactoredMatrix factored = matrix.factored();
+    if (!factored.is_valid()) return start;
     std::vector<glm::dvec2> right(chart.positions.size());
-    std::vector<glm::dvec2> permuted(chart.positions.size());
     std::vector<glm::dvec2> result = std::move(start);
+    const int iterations =
+        method == Flattening::conformal ? conformal_iterations : rigid_iterations;
     for (int round = 0; round < iterations; ++round) {
         check_cancelled();
         std::fill(right.begin(), right.end(), glm::dvec2(0.0));
@@ -198,13 +405,10 @@ std::vector<glm::dvec2> flattened(const AtlasSurface& surface, const ChartMesh& 
                 right[v[static_cast<glm::length_t>((k + 1) % 3)]] -= turned;
             }
         }
-        // Both coordinates at once: reading the factor costs most.
-        for (Eigen::Index v = 0; v < vertex_count; ++v)
-            permuted[static_cast<std::size_t>(order(v))] = right[static_cast<std::size_t>(v)];
-        solve(factor, diagonal_factor, permuted);
-        for (Eigen::Index v = 0; v < vertex_count; ++v)
-            result[static_cast<std::size_t>(v)] = permuted[static_cast<std::size_t>(order(v))];
+        factored.solve(right);
+        result.swap(right);
     }
+    if (method == Flattening::conformal) restore_area(surface, chart, result);
     return result;
 }
 

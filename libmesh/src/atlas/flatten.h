@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "atlas/surface.h"
+#include "relief/mesh/unwrap.h"
 
 namespace relief::detail {
 
@@ -71,12 +72,16 @@ ChartMesh chart_mesh(const AtlasSurface& surface, const ChartMembers& members,
 /// Projects a chart along the mean of its normals.
 std::vector<glm::dvec2> projected(const AtlasSurface& surface, const ChartMesh& chart);
 
-/// Flattens a connected chart as rigidly as possible. \param start from projected()
+/// Flattens a connected chart. \param start from projected()
 ///
 /// Each iteration finds the rotations of the triangles, then the coordinates that fit them best;
-/// one factorization serves all. Source: [Liu et al. 2008].
+/// one factorization serves all [Liu et al. 2008]. A conformal map fits triangles that are scaled
+/// first, by the factor that makes the surface flat and changes areas least: 1 at the longest
+/// border, which [Springborn et al. 2008] prove, and the solution of a Poisson equation elsewhere
+/// [Sawhney and Crane 2017].
+/// \return has inverted or flat triangles if there is no solution
 std::vector<glm::dvec2> flattened(const AtlasSurface& surface, const ChartMesh& chart,
-                                  std::vector<glm::dvec2> start);
+                                  std::vector<glm::dvec2> start, Flattening method);
 
 /// How a triangle is stretched by its coordinates.
 struct Stretch {

@@ -199,6 +199,7 @@ Atlas new_atlas(const AtlasSurface& surface, const UnwrapOptions& options, Layou
             : std::min(std::sqrt(expected_use * options.tiles * size.x * size.y / area),
                        std::max(size.x, size.y) / longest);
     FlatnessLimits limits;
+    limits.method = options.flattening;
     limits.max_stretch = options.max_stretch;
     limits.lattice_scale = texels_per_unit * layout.lattice_size / std::max(size.x, size.y);
     limits.max_side = max_overlength * std::max(size.x, size.y) / texels_per_unit;

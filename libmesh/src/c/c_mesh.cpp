@@ -19,6 +19,7 @@ constexpr std::array weights = {
     NormalWeight::uniform, NormalWeight::area,        NormalWeight::angle,     NormalWeight::sine,
     NormalWeight::max,     NormalWeight::angle_edges, NormalWeight::area_angle};
 constexpr std::array arithmetics = {Arithmetic::float64, Arithmetic::float32};
+constexpr std::array flattenings = {Flattening::arap, Flattening::conformal};
 
 relief_normal_options default_normal_options() {
     const NormalOptions defaults;
@@ -75,13 +76,13 @@ relief_unwrap_options default_unwrap_options() {
     options.split_hard = defaults.split_hard.value_or(RELIEF_ABSENT);
     options.texels_per_unit = defaults.texels_per_unit.value_or(RELIEF_ABSENT);
     options.keep_seams = defaults.keep_seams ? 1 : 0;
+    options.flattening = number_of(defaults.flattening, flattenings);
     return options;
 }
 
 UnwrapOptions unwrap_options(const relief_unwrap_options* given) {
     const relief_unwrap_options read =
         read_struct(given, default_unwrap_options(), "relief_unwrap_options");
-    check_reserved(read.reserved, "relief_unwrap_options");
     UnwrapOptions options;
     options.size = {read.width, read.height};
     options.padding = read.padding;
@@ -90,6 +91,7 @@ UnwrapOptions unwrap_options(const relief_unwrap_options* given) {
     options.split_hard = optional_value(read.split_hard);
     options.texels_per_unit = optional_value(read.texels_per_unit);
     options.keep_seams = read.keep_seams != 0;
+    options.flattening = enumerator(read.flattening, flattenings, "flattening");
     return options;
 }
 

@@ -702,6 +702,10 @@ TEST(Unwrap, HasAResultForEveryMesh) {
     UnwrapOptions options;
     options.size = {512, 512};
     options.padding = 1;
+    UnwrapOptions conformal = options;
+    conformal.flattening = Flattening::conformal;
+    for (std::size_t i = 0; i < meshes.size(); i += 3)
+        EXPECT_EQ(broken_promise(unwrap(meshes[i].mesh, conformal)), "") << meshes[i].name;
     for (const auto& [name, mesh] : meshes) {
         Report report;
         const Unwrapped unwrapped = unwrap(mesh, options, report);
@@ -815,6 +819,7 @@ TEST_P(UnwrapChanges, ChangeNoCoordinate) {
         const Mesh mesh = test::random_mesh(seed);
         MeshVariant variant(mesh);
         GetParam().apply(variant, dice);
+        options.flattening = seed % 2 == 0 ? Flattening::arap : Flattening::conformal;
         const Unwrapped before = unwrap(mesh, options);
         const Unwrapped after = unwrap(variant.mesh, options);
         for (std::size_t corner = 0; corner < variant.original.size(); ++corner) {
@@ -838,6 +843,12 @@ TEST(Unwrap, DoesNotDependOnThreads) {
     options.execution.threads = 7;
     const Unwrapped many = unwrap(torus, options);
     EXPECT_TRUE(test::same_bits(one.corner_texcoords, many.corner_texcoords));
+    options.flattening = Flattening::conformal;
+    const Unwrapped many_conformal = unwrap(torus, options);
+    options.execution.threads = 1;
+    const Unwrapped one_conformal = unwrap(torus, options);
+    EXPECT_TRUE(test::same_bits(one_conformal.corner_texcoords, many_conformal.corner_texcoords));
+    EXPECT_FALSE(test::same_bits(one.corner_texcoords, one_conformal.corner_texcoords));
 }
 
 TEST(Unwrap, CanBeCancelled) {

@@ -214,6 +214,7 @@ TEST(CInterface, UnwrapsAsCpp) {
     options.width = 256;
     options.height = 128;
     options.padding = 2;
+    options.flattening = RELIEF_FLATTENING_CONFORMAL;
     std::vector<float> texcoords(6 * mesh.triangles.size());
     std::vector<std::uint32_t> charts(mesh.triangles.size());
     relief_atlas_stats stats{};
@@ -223,6 +224,7 @@ TEST(CInterface, UnwrapsAsCpp) {
               RELIEF_OK)
         << relief_last_error();
     UnwrapOptions same;
+    same.flattening = Flattening::conformal;
     same.size = {256, 128};
     same.padding = 2;
     const Unwrapped expected = unwrap(mesh, same);

@@ -4,6 +4,7 @@
 /// into a map. Tests: tests/mesh/atlas/unwrap_test.cpp, tests/mesh/atlas/injectivity_test.cpp.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -11,12 +12,23 @@
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 
 namespace RELIEF_API relief {
+
+/// What charts keep in the map as far as their curvature permits.
+enum class Flattening {
+    arap,       ///< Lengths: as rigid as possible.
+    conformal,  ///< Angles. The density of texels varies more.
+};
+
+template <>
+inline constexpr auto enum_names<Flattening> = std::to_array<EnumName<Flattening>>(
+    {{"arap", Flattening::arap}, {"conformal", Flattening::conformal}});
 
 struct UnwrapOptions {
     glm::ivec2 size{2048};  ///< Of the map in texels, 16 to 65536 each.
@@ -28,6 +40,8 @@ struct UnwrapOptions {
     /// or below a tenth of the mean one if that is less, may exceed it, because their corners are
     /// rounded.
     double max_stretch = 4.0;
+    /// Without effect with `repack`. Conformal charts have the same mean density of texels.
+    Flattening flattening = Flattening::arap;
     bool keep_seams = false;       ///< The seams of existing texture coordinates stay seams.
     bool split_materials = false;  ///< No chart has triangles of two materials.
     /// Radians, 0 to pi: edges with a larger angle between their triangles are between two charts
