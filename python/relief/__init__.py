@@ -81,7 +81,7 @@ __all__ = [
     "Mesh", "Scene", "ToolError", "Unwrapped", "__version__", "accuracy", "bake", "blend_normals", "bump", "bump_options",
     "check_mesh", "check_normal_map", "compare_images", "compare_meshes", "compare_normals", "convert_space",
     "corner_normals", "corner_tangents", "decimate", "decode_normals", "encode_normals", "flip_green", "heights",
-    "levels_of_detail", "mean_curvatures", "measure_texcoords", "normal_mip_levels", "read_image", "read_mesh",
+    "levels_of_detail", "make", "mean_curvatures", "measure_texcoords", "normal_mip_levels", "read_image", "read_mesh",
     "resize_normals", "run", "scale_slopes", "set_thread_limit", "slopes", "split_vertices", "subdivide", "surface_distance",
     "triangle_normals", "unwrap", "vertex_normals", "vertex_tangents", "with_frames", "write_image", "write_mesh",
     "write_texture",
@@ -297,4 +297,25 @@ def accuracy(
     """
     options = (["--quick"] if quick else []) + ([] if times else ["--no-times"])
     report: dict[str, Any] = run("relief-accuracy", "run", *subjects, *options, "--json")
+    return report
+
+
+@_arguments.checks_keywords
+def make(
+    source: str | os.PathLike[str],
+    output: str | os.PathLike[str],
+    *,
+    triangles: int = 5000,
+    size: int = 2048,
+    lods: int = 0,
+    engine: Literal["gltf", "godot", "unity", "unreal"] = "gltf",
+) -> dict[str, Any]:
+    """Make an asset with maps from the file of a dense model, as `relief make` does (docs/make.md).
+
+    It runs in a process of its own. The result is the report of `relief make --report`: the stages, the numbers of
+    triangles, the maps and the findings. Raises ToolError if the tool fails; then no file is changed.
+    """
+    report: dict[str, Any] = run(
+        "relief", "make", source, "-o", output, "--triangles", str(triangles), "--size", str(size),
+        "--lods", str(lods), "--for", engine, report=True)
     return report

@@ -431,6 +431,18 @@ class Pictures(CommandLineCase):
         self.assertAlmostEqual(errors["max"], float(degrees.max()), places=5)
 
 
+class Assets(unittest.TestCase):
+    def test_make(self):
+        with tempfile.TemporaryDirectory() as folder:
+            output = pathlib.Path(folder) / "urn.glb"
+            report = relief.make(DATA / "urn-high.ply", output, triangles=300, size=64, lods=1)
+            self.assertTrue(output.exists())
+            self.assertEqual(report["triangles"], 300)
+            self.assertEqual(len(report["levels"]), 1)
+            with self.assertRaises(relief.ToolError):
+                relief.make(pathlib.Path(folder) / "none.ply", output)
+
+
 class Experiments(unittest.TestCase):
     def test_accuracy(self):
         report = relief.accuracy("storage", times=False)
