@@ -18,7 +18,10 @@
 #include "geometry/check_triangles.h"
 #include "geometry/corners.h"
 #include "geometry/direction.h"
+#include "geometry/smooth_fans.h"
+#include "geometry/triangle_stacks.h"
 #include "geometry/value_order.h"
+#include "geometry/weld.h"
 #include "progress_stage.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"
@@ -147,6 +150,20 @@ void make_flat(FramedMesh& framed, Report& report) {
     store_corner_normals(framed, at_corners, report);
 }
 
+/// Returns whether triangles of opposite winding are at the same positions.
+bool has_doubled_triangles(const Mesh& mesh) {
+    const std::vector<std::uint32_t> classes = weld_positions(mesh.positions);
+    const std::vector<std::uint32_t> stacks = triangle_stacks(mesh.triangles, classes);
+    const auto welded = [&](std::size_t t) {
+        const glm::uvec3& triangle = mesh.triangles[t];
+        return glm::uvec3(classes[triangle.x], classes[triangle.y], classes[triangle.z]);
+    };
+    for (std::size_t t = 0; t < stacks.size(); ++t) {
+        if (stacks[t] != t && are_opposite(welded(t), welded(stacks[t]))) return true;
+    }
+    return false;
+}
+
 void make_averaged(FramedMesh& framed, NormalMode mode, const FrameOptions& options,
                    Report& report) {
     Mesh& mesh = framed.mesh;
@@ -162,6 +179,11 @@ void make_averaged(FramedMesh& framed, NormalMode mode, const FrameOptions& opti
         if (has_groups) hard_edges.smoothing_groups = mesh.smoothing_groups;
         const CornerNormals corners =
             corner_normals(mesh.positions, mesh.triangles, weight, how, hard_edges, report);
+        framed.normals_by_area = corners.by_area;
+        store_corner_normals(framed, corners.normals, report);
+    } else if (options.weld_tolerance == 0.0 && has_doubled_triangles(mesh)) {
+        const CornerNormals corners =
+            side_normals(mesh.positions, mesh.triangles, weight, how, report);
         framed.normals_by_area = corners.by_area;
         store_corner_normals(framed, corners.normals, report);
     } else if (weight) {

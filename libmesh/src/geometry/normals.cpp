@@ -29,6 +29,7 @@
 #include "geometry/normal_contributions.h"
 #include "geometry/normal_sums.h"
 #include "geometry/smooth_fans.h"
+#include "geometry/triangle_stacks.h"
 #include "geometry/weld.h"
 #include "parallel.h"
 #include "portable_math.h"
@@ -613,19 +614,53 @@ std::vector<bool> borrow_normals(std::span<const Corner> open, std::size_t verte
     return has_normal;
 }
 
-}  // namespace
+/// Stacks of triangles, as in FanInput; empty if none is doubled.
+struct Stacks {
+    std::vector<std::uint32_t> first;
+    std::vector<std::uint8_t> doubled;
+};
 
-CornerNormals corner_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
-                             std::optional<NormalWeight> weight, const NormalOptions& options,
-                             const HardEdges& hard_edges, Report& report) {
+/// \param normals  of the triangles; those without one are not doubled
+Stacks stacks_of(std::span<const glm::uvec3> welded, std::span<const glm::vec3> normals,
+                 Report& report) {
+    Stacks stacks{triangle_stacks(welded), {}};
+    // By stack: the windings of its triangles with a normal, relative to the first triangle.
+    constexpr std::uint8_t both = 3;
+    std::vector<std::uint8_t> windings(stacks.first.size(), 0);
+    bool has_doubled = false;
+    for (std::uint32_t t = 0; t < stacks.first.size(); ++t) {
+        if (normals[t] == glm::vec3(0.0F)) continue;
+        std::uint8_t& found = windings[stacks.first[t]];
+        const std::uint8_t before = found;
+        const bool is_opposite = are_opposite(welded[t], welded[stacks.first[t]]);
+        found = static_cast<std::uint8_t>(found | (is_opposite ? 2U : 1U));
+        if (found != both || before == both) continue;
+        report.add("double-sided triangle", "triangle", stacks.first[t],
+                   "keeps a normal for each side");
+        has_doubled = true;
+    }
+    if (!has_doubled) return {};
+    for (const std::uint32_t first : stacks.first)
+        stacks.doubled.push_back(windings[first] == both ? 1 : 0);
+    return stacks;
+}
+
+/// \param joins_positions  see FanInput
+CornerNormals fan_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
+                          std::optional<NormalWeight> weight, const NormalOptions& options,
+                          const HardEdges& hard_edges, bool joins_positions, Report& report) {
     check_triangles(triangles, positions.size());
     check(hard_edges, triangles.size());
     const Groups shared = sharing_vertices(positions, options.weld_tolerance);
     const std::vector<glm::uvec3> welded = over_places(triangles, positions.size(), shared);
     const std::vector<glm::vec3> of_triangles = normals_or_zero(positions, triangles);
-    const FanMesh fans =
-        mesh_of(smooth_fans({positions, triangles, welded, of_triangles}, hard_edges), positions,
-                triangles);
+    // Triangles that welding moves to the same positions are not the sides of one.
+    const bool is_exact = options.weld_tolerance.value_or(0.0) == 0.0;
+    const Stacks stacks = is_exact ? stacks_of(welded, of_triangles, report) : Stacks{};
+    const FanMesh fans = mesh_of(smooth_fans({positions, triangles, welded, of_triangles,
+                                              stacks.first, stacks.doubled, joins_positions},
+                                             hard_edges),
+                                 positions, triangles);
     std::vector<glm::vec3> normals(fans.positions.size());
     const AveragingResult averaged =
         weight ? averaged_normals(fans.positions, fans.triangles, *weight, options.arithmetic,
@@ -651,6 +686,20 @@ CornerNormals corner_normals(StridedSpan<const glm::vec3> positions, TriangleSpa
         report_vertex(kind, fans.vertex[vertex], report);
     }
     return result;
+}
+
+}  // namespace
+
+CornerNormals corner_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
+                             std::optional<NormalWeight> weight, const NormalOptions& options,
+                             const HardEdges& hard_edges, Report& report) {
+    return fan_normals(positions, triangles, weight, options, hard_edges, false, report);
+}
+
+CornerNormals detail::side_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
+                                   std::optional<NormalWeight> weight, const NormalOptions& options,
+                                   Report& report) {
+    return fan_normals(positions, triangles, weight, options, {}, true, report);
 }
 
 }  // namespace relief

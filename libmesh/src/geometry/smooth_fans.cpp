@@ -23,6 +23,7 @@
 
 #include "geometry/corners.h"
 #include "geometry/direction.h"
+#include "geometry/edge_pairs.h"
 #include "geometry/normal_sums.h"
 #include "geometry/weld.h"
 #include "parallel.h"
@@ -46,6 +47,7 @@ struct Spoke {
     std::uint32_t neighbor;
     std::uint32_t corner;  ///< Index among the corners at this position.
     std::uint32_t group;   ///< Smoothing group of its triangle, 0 if the mesh has none.
+    bool leaves;           ///< Whether the triangle runs from the central position.
 };
 
 bool spoke_comes_before(const Spoke& a, const Spoke& b) {
@@ -97,6 +99,13 @@ class FansAtPosition {
     DisjointSets& find(std::span<const Corner> corners) {
         corners_ = corners;
         fans_.reset(corners.size());
+        if (input_.joins_positions &&
+            std::none_of(corners.begin(), corners.end(),
+                         [&](Corner corner) { return is_doubled(triangle_of(corner)); })) {
+            for (std::uint32_t i = 1; i < corners.size(); ++i)
+                fans_.join(0, i);
+            return fans_;
+        }
         gather_spokes();
         for (auto begin = spokes_.begin(); begin != spokes_.end();) {
             const auto end = std::find_if(begin, spokes_.end(), [&](const Spoke& spoke) {
@@ -129,8 +138,8 @@ class FansAtPosition {
             }
             const std::uint32_t group =
                 hard_edges_.smoothing_groups.empty() ? 0 : hard_edges_.smoothing_groups[triangle];
-            spokes_.push_back({next, i, group});
-            spokes_.push_back({previous, i, group});
+            spokes_.push_back({next, i, group, true});
+            spokes_.push_back({previous, i, group, false});
         }
         if (!same_edges_.empty()) {
             same_edges_.settle();
@@ -169,8 +178,16 @@ class FansAtPosition {
         return input_.normals[triangle_of(corners_[spoke.corner])];
     }
 
+    [[nodiscard]] bool is_doubled(std::uint32_t triangle) const {
+        return !input_.doubled.empty() && input_.doubled[triangle] != 0;
+    }
+
     void join_along_edge(std::span<Spoke> spokes) {
-        if (spokes.size() == 2)
+        if (std::any_of(spokes.begin(), spokes.end(), [&](const Spoke& spoke) {
+                return is_doubled(triangle_of(corners_[spoke.corner]));
+            }))
+            join_sides(spokes);
+        else if (spokes.size() == 2)
             join_if_smooth(spokes[0], spokes[1]);
         else if (spokes.size() > 2)
             join_around(spokes);
@@ -208,6 +225,52 @@ class FansAtPosition {
             join_if_smooth(around_[i].spoke, around_[(i + 1) % around_.size()].spoke);
     }
 
+    /// Joins the sheets of doubled triangles. All decisions are made by value.
+    void join_sides(std::span<Spoke> spokes) {
+        const auto position = [&](Corner corner) {
+            return glm::dvec3(input_.positions[vertex_of(corner, input_.triangles)]);
+        };
+        // The end of the edge, the third corner, and the central one.
+        const auto corners = [&](const Spoke& spoke) {
+            const Corner corner = corners_[spoke.corner];
+            const Corner next = next_in_triangle(corner);
+            const Corner previous = previous_in_triangle(corner);
+            if (spoke.leaves) return std::array{next, previous, corner};
+            return std::array{previous, next, corner};
+        };
+        std::sort(spokes.begin(), spokes.end(), [&](const Spoke& a, const Spoke& b) {
+            if (normal_at(a) != normal_at(b))
+                return comes_before(glm::dvec3(normal_at(a)), glm::dvec3(normal_at(b)));
+            for (std::size_t i = 0; i < 3; ++i) {
+                const glm::dvec3 at_a = position(corners(a)[i]);
+                const glm::dvec3 at_b = position(corners(b)[i]);
+                if (at_a != at_b) return comes_before(at_a, at_b);
+            }
+            return a.leaves && !b.leaves;
+        });
+        at_edge_.clear();
+        for (std::uint32_t i = 0; i < spokes.size(); ++i) {
+            const Spoke& spoke = spokes[i];
+            const Corner corner = corners_[spoke.corner];
+            const std::uint32_t stack = input_.stacks[triangle_of(corner)];
+            // A triangle that occurs several times continues as one.
+            const auto same =
+                std::find_if(at_edge_.begin(), at_edge_.end(), [&](const TriangleAtEdge& other) {
+                    return other.stack == stack && other.ascends == spoke.leaves;
+                });
+            if (same != at_edge_.end()) {
+                join_if_smooth(spokes[same->corner], spoke);
+                continue;
+            }
+            const glm::dvec3 edge = position(corners(spoke)[0]) - position(corner);
+            at_edge_.push_back(
+                {i, spoke.leaves,
+                 outward_from(glm::dvec3(normal_at(spoke)), spoke.leaves ? edge : -edge), stack});
+        }
+        for (const auto& [a, b] : pairs_.join(at_edge_))
+            join_if_smooth(spokes[a], spokes[b]);
+    }
+
     struct SpokeAt {
         double angle;
         Spoke spoke;
@@ -219,7 +282,9 @@ class FansAtPosition {
     DisjointSets fans_;
     std::vector<Spoke> spokes_;
     std::vector<SpokeAt> around_;
-    Aliases same_edges_;  ///< Neighbors in the same direction.
+    Aliases same_edges_;                   ///< Neighbors in the same direction.
+    std::vector<TriangleAtEdge> at_edge_;  ///< Their corners are indices of spokes.
+    EdgePairs pairs_;
 };
 
 }  // namespace
