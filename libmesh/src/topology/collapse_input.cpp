@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -376,6 +377,72 @@ void leave_out_small_parts(const Mesh& mesh, const Parts& materials, std::span<c
     });
 }
 
+/// Returns, for each vertex, the next one at the same position, in a circle. Empty if there are no
+/// others.
+std::vector<std::uint32_t> next_at_position(const Topology& topology) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> cut;  // Positions with their vertices.
+    for (std::uint32_t v = 0; v < topology.position_vertex.size(); ++v) {
+        if (topology.is_cut[v]) cut.emplace_back(topology.position_vertex[v], v);
+    }
+    if (cut.empty()) return {};
+    std::sort(cut.begin(), cut.end());
+    std::vector<std::uint32_t> next(topology.position_vertex.size());
+    std::iota(next.begin(), next.end(), 0U);
+    for (std::size_t first = 0, end = 0; first < cut.size(); first = end) {
+        while (end < cut.size() && cut[end].first == cut[first].first)
+            ++end;
+        for (std::size_t i = first; i < end; ++i)
+            next[cut[i].second] = cut[i + 1 < end ? i + 1 : first].second;
+    }
+    return next;
+}
+
+/// Fills the wedges of a surface. With layers, a wedge stands for those of all layers.
+void set_wedges(const Mesh& mesh, const Parts& parts, std::span<const std::uint32_t> classes,
+                Wedges wedges, PreparedMesh& result) {
+    CollapseInput& input = result.input;
+    input.wedges.reserve(result.sources.size());
+    if (result.layers.empty()) {
+        for (const std::uint32_t source : result.sources) {
+            const glm::uvec3 triangle = triangle_from(first_corner(mesh, source), mesh.triangles);
+            const std::uint32_t part = parts[source];
+            input.wedges.emplace_back(wedges.at(triangle.x, part), wedges.at(triangle.y, part),
+                                      wedges.at(triangle.z, part));
+        }
+        input.wedge_count = wedges.vertex.size();
+        result.vertex_of_wedge = std::move(wedges.vertex);
+        return;
+    }
+    std::map<LayeredWedges::value_type, std::uint32_t> numbers;
+    for (const std::uint32_t source : result.sources) {
+        const glm::uvec3 triangle = triangle_from(first_corner(mesh, source), mesh.triangles);
+        const Layer alone{source, {false, parts[source]}, source};
+        std::span<const Layer> layers = layers_of(result.layers, source);
+        if (layers.empty()) layers = {&alone, 1};
+        input.counts.push_back(static_cast<std::uint32_t>(layers.size()));
+        glm::uvec3 numbered{};
+        for (int i = 0; i < 3; ++i) {
+            LayeredWedges::value_type at_corner;
+            for (const Layer& layer : layers) {
+                const glm::uvec3& corners = mesh.triangles[layer.triangle];
+                int k = 0;
+                while (classes[corners[k]] != classes[triangle[i]])
+                    ++k;
+                const std::uint32_t wedge = wedges.at(corners[k], layer.key.part);
+                at_corner.emplace_back(layer.key, wedges.vertex[wedge]);
+            }
+            numbered[i] = numbers.try_emplace(at_corner, static_cast<std::uint32_t>(numbers.size()))
+                              .first->second;
+            if (numbered[i] == result.layered_wedges.size()) {
+                result.vertex_of_wedge.push_back(at_corner.front().second);
+                result.layered_wedges.push_back(std::move(at_corner));
+            }
+        }
+        input.wedges.push_back(numbered);
+    }
+    input.wedge_count = result.layered_wedges.size();
+}
+
 }  // namespace
 
 /// Arrays are freed as soon as they are not needed, because the memory for the input is the largest
@@ -393,8 +460,13 @@ PreparedMesh prepared(const AttributedMesh& surface, const DecimateOptions& opti
     std::vector<Corner> order = canonical_order(surface, space, parts);
     if (smallest_part > 0.0)
         leave_out_small_parts(mesh, parts, sizes, smallest_part, order, report);
+    result.layers = separate_layers(
+        mesh, classes, [&](std::uint32_t triangle) { return parts[triangle]; },
+        [&](std::uint32_t vertex, std::uint32_t part) { return wedges.at(vertex, part); }, order,
+        report);
     input.topology = topology_of(mesh, classes, report, order);
     free_memory(order);
+    input.next_at_position = next_at_position(input.topology);
     result.sources = std::move(input.topology.source_triangle);
     result.set_aside = std::move(input.topology.set_aside);
     input.center = space.center;
@@ -416,18 +488,9 @@ PreparedMesh prepared(const AttributedMesh& surface, const DecimateOptions& opti
         for (const std::uint32_t vertex : input.topology.position_vertex)
             input.is_fixed.push_back(is_fixed[vertex]);
     }
-    free_memory(classes);
     free_memory(input.topology.position_vertex);
-    input.wedges.reserve(result.sources.size());
-    for (const std::uint32_t source : result.sources) {
-        const glm::uvec3 triangle = triangle_from(first_corner(mesh, source), mesh.triangles);
-        const std::uint32_t part = parts[source];
-        input.wedges.emplace_back(wedges.at(triangle.x, part), wedges.at(triangle.y, part),
-                                  wedges.at(triangle.z, part));
-    }
-    input.wedge_count = wedges.vertex.size();
-    result.vertex_of_wedge = std::move(wedges.vertex);
-    wedges = {};
+    set_wedges(mesh, parts, classes, std::move(wedges), result);
+    free_memory(classes);
     set_attributes(input, surface, weights, result.vertex_of_wedge);
     input.keeps_borders = options.keep_borders;
     input.keeps_seams = options.keep_seams;
@@ -473,6 +536,20 @@ JoinedSurfaces::JoinedSurfaces(std::span<PreparedMesh> meshes, std::span<const d
             input.is_fixed.resize(input.positions.size(), false);
             joined_.is_fixed.insert(joined_.is_fixed.end(), input.is_fixed.begin(),
                                     input.is_fixed.end());
+        }
+        if (!input.next_at_position.empty() || !joined_.next_at_position.empty()) {
+            const std::size_t before = joined_.next_at_position.size();
+            joined_.next_at_position.resize(joined_.positions.size());
+            std::iota(joined_.next_at_position.begin() + static_cast<std::ptrdiff_t>(before),
+                      joined_.next_at_position.end(), static_cast<std::uint32_t>(before));
+            for (std::uint32_t v = 0; v < input.next_at_position.size(); ++v)
+                joined_.next_at_position[first_vertex + v] =
+                    first_vertex + input.next_at_position[v];
+        }
+        if (!input.counts.empty() || !joined_.counts.empty()) {
+            joined_.counts.resize(first_triangle, 1);
+            input.counts.resize(input.topology.triangles.size(), 1);
+            joined_.counts.insert(joined_.counts.end(), input.counts.begin(), input.counts.end());
         }
         for (const glm::uvec3& wedges : input.wedges)
             joined_.wedges.push_back(wedges + first_wedge);

@@ -19,6 +19,7 @@
 #include "relief/mesh/report.h"
 #include "relief/mesh/topology.h"
 #include "topology/edge_collapse.h"
+#include "topology/triangle_layers.h"
 
 namespace relief::detail {
 
@@ -64,6 +65,9 @@ struct PreparedMesh {
     std::vector<std::uint32_t> sources;  ///< For each triangle of the surface, that of the mesh.
     std::vector<std::uint32_t> set_aside;
     std::vector<std::uint32_t> vertex_of_wedge;
+    /// Triangles of the mesh at the positions of others, which become what those become.
+    TriangleLayers layers;
+    LayeredWedges layered_wedges;  ///< Empty if there are no layers.
 };
 
 /// \param weights  instead of those of the options

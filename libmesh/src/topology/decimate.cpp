@@ -79,25 +79,38 @@ struct Remains {
 };
 
 /// Gathers what remains in the order of the input.
-///
-/// \param sources    for each triangle of the surface, that of the input
-/// \param set_aside  triangles of the input that remain as they are
 Remains gathered_remains(const Mesh& mesh, const Collapsed& collapsed,
-                         std::span<const std::uint32_t> sources,
-                         std::span<const std::uint32_t> set_aside,
-                         std::span<const std::uint32_t> vertex_of_wedge) {
+                         const PreparedMesh& prepared) {
     std::vector<std::pair<std::uint32_t, glm::uvec3>> all;
-    all.reserve(collapsed.remaining.size() + set_aside.size());
+    all.reserve(collapsed.remaining.size() + prepared.set_aside.size());
     for (std::size_t i = 0; i < collapsed.remaining.size(); ++i) {
-        const std::uint32_t source = sources[collapsed.remaining[i]];
+        const std::uint32_t source = prepared.sources[collapsed.remaining[i]];
         const Corner first = first_corner(mesh, source);
-        glm::uvec3 triangle{};
-        for (int k = 0; k < 3; ++k)
-            triangle[static_cast<int>((first + static_cast<Corner>(k)) % 3)] =
-                vertex_of_wedge[collapsed.wedges[i][k]];
-        all.emplace_back(source, triangle);
+        const std::span<const Layer> layers = layers_of(prepared.layers, source);
+        if (layers.empty()) {
+            glm::uvec3 triangle{};
+            for (int k = 0; k < 3; ++k)
+                triangle[static_cast<int>((first + static_cast<Corner>(k)) % 3)] =
+                    prepared.vertex_of_wedge[collapsed.wedges[i][k]];
+            all.emplace_back(source, triangle);
+        }
+        const glm::uvec3 corners = triangle_from(first, mesh.triangles);
+        for (const Layer& layer : layers) {
+            glm::uvec3 triangle{};
+            for (int k = 0; k < 3; ++k) {
+                const glm::vec3& position = mesh.positions[mesh.triangles[layer.triangle][k]];
+                int corner = 0;
+                while (mesh.positions[corners[corner]] != position)
+                    ++corner;
+                const auto& wedges = prepared.layered_wedges[collapsed.wedges[i][corner]];
+                triangle[k] = std::lower_bound(wedges.begin(), wedges.end(),
+                                               std::pair(layer.key, std::uint32_t(0)))
+                                  ->second;
+            }
+            all.emplace_back(layer.triangle, triangle);
+        }
     }
-    for (const std::uint32_t t : set_aside)
+    for (const std::uint32_t t : prepared.set_aside)
         all.emplace_back(t, mesh.triangles[t]);
     std::sort(all.begin(), all.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -108,8 +121,14 @@ Remains gathered_remains(const Mesh& mesh, const Collapsed& collapsed,
         remains.sources.push_back(source);
         remains.triangles.push_back(triangle);
     }
-    for (const auto& [wedge, position] : collapsed.moved)
-        remains.moved.emplace_back(vertex_of_wedge[wedge], position);
+    for (const auto& [wedge, position] : collapsed.moved) {
+        if (prepared.layers.empty()) {
+            remains.moved.emplace_back(prepared.vertex_of_wedge[wedge], position);
+            continue;
+        }
+        for (const auto& [key, vertex] : prepared.layered_wedges[wedge])
+            remains.moved.emplace_back(vertex, position);
+    }
     return remains;
 }
 
@@ -193,9 +212,7 @@ SceneRemains remains_of(const Scene& scene, const DecimateOptions& options) {
         result.obstacles = all.obstacles;
     }
     for (std::size_t m = 0; m < scene.size(); ++m) {
-        const PreparedMesh& mesh = prepared_meshes[m];
-        result.meshes.push_back(gathered_remains(scene[m].mesh, collapsed[m], mesh.sources,
-                                                 mesh.set_aside, mesh.vertex_of_wedge));
+        result.meshes.push_back(gathered_remains(scene[m].mesh, collapsed[m], prepared_meshes[m]));
     }
     return result;
 }
@@ -427,7 +444,8 @@ std::vector<FramedMesh> decimated(std::span<const SceneMesh> meshes, const Decim
     const Scene scene(meshes, options);
     const SceneRemains remains =
         options.max_error ? remains_within(scene, options) : remains_of(scene, options);
-    // One interior move removes two triangles, so the result may be one less than requested.
+    // One interior move removes two triangles and their layers, so the result may be less than
+    // requested.
     if (options.triangles && !options.max_error && remains.count() > *options.triangles)
         scene_report.add(
             "number of triangles out of reach", "mesh", 0,

@@ -4,6 +4,7 @@
 #include "topology/edge_collapse.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -24,6 +25,16 @@ namespace {
 
 constexpr std::uint32_t none = no_corner;
 constexpr float no_collapse = std::numeric_limits<float>::infinity();
+
+/// The maximum number of vertices at one position that move together.
+constexpr std::size_t max_linked = 8;
+
+/// A move of one of the vertices at a position.
+struct LinkedMove {
+    std::uint32_t vertex = none;
+    Ring ring;
+    Move move;
+};
 
 /// The maximum rotation of a triangle in one move: about 78 degrees. Several moves may add up; see
 /// Collapser::is_near_normals().
@@ -59,7 +70,8 @@ constexpr std::uint8_t is_dirty = 1;    ///< The cost must be computed.
 constexpr std::uint8_t is_careful = 2;  ///< The cheapest collapse was refused once, so all checks
                                         ///< are made when the cost is computed.
 constexpr std::uint8_t is_locked = 4;
-constexpr std::uint8_t is_sharp = 8;  ///< See min_smooth_cosine.
+constexpr std::uint8_t is_linked = 16;  ///< Other vertices have its position and move with it.
+constexpr std::uint8_t is_sharp = 8;    ///< See min_smooth_cosine.
 
 class Collapser {
   public:
@@ -94,6 +106,18 @@ class Collapser {
     }
 
     float best_move(std::uint32_t vertex, const Ring& ring, Move& best) const;
+    [[nodiscard]] std::uint32_t next_at_position(std::uint32_t vertex) const {
+        return input_.next_at_position.empty() ? vertex : input_.next_at_position[vertex];
+    }
+    /// Returns the smallest vertex at the position of a vertex, which stands for all.
+    [[nodiscard]] std::uint32_t first_at_position(std::uint32_t vertex) const {
+        return first_at_position_.empty() ? vertex : first_at_position_[vertex];
+    }
+    [[nodiscard]] std::vector<LinkedMove> linked_vertices(std::uint32_t first) const;
+    [[nodiscard]] bool find_linked_moves(std::uint32_t position, std::span<LinkedMove> moves) const;
+    [[nodiscard]] bool is_valid(std::span<const LinkedMove> moves) const;
+    float best_linked_moves(std::uint32_t first, std::vector<LinkedMove>& best) const;
+    std::size_t collapse_linked_if_cheap(std::uint32_t first, float limit);
     float evaluate(std::uint32_t vertex, std::size_t& examined) const;
     std::size_t collapse(std::uint32_t vertex, const Ring& ring, const Move& move);
     std::size_t collapse_if_cheap(std::uint32_t vertex, const Ring& ring, float limit);
@@ -114,35 +138,52 @@ class Collapser {
     std::vector<std::uint8_t> flags_;
     std::vector<glm::vec3> mean_normals_;  ///< The sum of the unit normals of the input, or 0.
     // For sharp vertices; with a maximum angle of normals, for all; otherwise empty:
-    std::vector<std::uint32_t> normal_begin_;  ///< By vertex: its first entry in normals_at_.
-    std::vector<glm::vec3> normals_at_;        ///< The normals of the input at each vertex.
-    std::vector<std::uint32_t> alive_;         ///< The vertices that may move, ascending.
+    std::vector<std::uint32_t> normal_begin_;       ///< By vertex: its first entry in normals_at_.
+    std::vector<glm::vec3> normals_at_;             ///< The normals of the input at each vertex.
+    std::vector<std::uint32_t> first_at_position_;  ///< Empty: no vertices share a position.
+    std::vector<std::uint32_t> alive_;              ///< The vertices that may move, ascending.
     // Only if there are at least two groups:
     std::vector<std::uint32_t> groups_;    ///< By vertex; none for locked ones.
     std::vector<std::uint8_t> at_border_;  ///< By vertex: a neighbor may be in another group.
     std::size_t grouped_ = 0;              ///< The number of vertices that may move at the time.
     std::size_t triangles_ = 0;
     std::size_t target_ = 0;
+    std::size_t max_count_ = 1;  ///< The largest one of CollapseInput::counts.
     Collapsed result_;
     std::atomic<std::size_t> examined_ = 0;
 };
 
 Collapser::Collapser(CollapseInput input) : input_(std::move(input)), surface_(input_) {
     const std::size_t vertices = input_.positions.size();
-    triangles_ = surface_.corners().size() / 3;
+    const std::size_t triangles = surface_.corners().size() / 3;
+    triangles_ = triangles;
+    if (!input_.counts.empty()) {
+        triangles_ = std::accumulate(input_.counts.begin(), input_.counts.end(), std::size_t(0));
+        max_count_ = *std::max_element(input_.counts.begin(), input_.counts.end());
+    }
     target_ = input_.triangles.value_or(0);
     if (triangles_ <= target_) return;
     error_.emplace(input_, surface_);
     mean_normals_.assign(vertices, glm::vec3(0.0F));
-    for (std::size_t t = 0; t < triangles_; ++t)
+    for (std::size_t t = 0; t < triangles; ++t)
         add_triangle(t);
-    for (std::size_t t = 0; t < triangles_; ++t)
+    for (std::size_t t = 0; t < triangles; ++t)
         error_->add_lines(t);
     flags_.assign(vertices, 0);
     prepare_normals();
     costs_.assign(vertices, no_collapse);
+    if (!input_.next_at_position.empty()) first_at_position_.assign(vertices, none);
+    for (std::uint32_t v = 0; v < first_at_position_.size(); ++v) {
+        for (std::uint32_t at = v; first_at_position_[at] == none; at = next_at_position(at))
+            first_at_position_[at] = v;
+    }
     for (std::uint32_t v = 0; v < vertices; ++v) {
-        if (input_.topology.is_cut[v]) {
+        if (next_at_position(v) != v) {
+            flags_[v] |= is_linked;
+            if (first_at_position(v) != v) continue;
+            flags_[v] |= is_dirty;
+            alive_.push_back(v);
+        } else if (input_.topology.is_cut[v]) {
             flags_[v] |= is_locked;
         } else {
             flags_[v] |= is_dirty;
@@ -342,7 +383,116 @@ float Collapser::best_move(std::uint32_t vertex, const Ring& ring, Move& best) c
     return std::isinf(least) ? no_collapse : static_cast<float>(std::min(least, 1e30));
 }
 
+/// Gathers the rings of all vertices at a position if their sheets share two lines from it and
+/// nothing else: a line of all sheets passes through the position. Otherwise empty.
+std::vector<LinkedMove> Collapser::linked_vertices(std::uint32_t first) const {
+    std::vector<LinkedMove> moves;
+    std::array<std::uint32_t, 2> ends = {none, none};
+    std::uint32_t vertex = first;
+    do {
+        if (moves.size() == max_linked) return {};
+        LinkedMove& here = moves.emplace_back();
+        here.vertex = vertex;
+        if (!surface_.find_ring(vertex, here.ring)) return {};
+        const Ring& ring = here.ring;
+        if (!ring.has_border || ring.lines != 2 || !may_move(vertex, ring)) return {};
+        std::array<std::uint32_t, 2> here_ends = {
+            first_at_position(ring.neighbors[0]),
+            first_at_position(ring.neighbors[ring.spokes - 1])};
+        std::sort(here_ends.begin(), here_ends.end());
+        if (ends[0] == none) ends = here_ends;
+        if (ends != here_ends || ends[0] == ends[1]) return {};
+        for (std::size_t i = 0; i < ring.spokes; ++i) {
+            if (first_at_position(ring.neighbors[i]) == first) return {};
+        }
+        vertex = next_at_position(vertex);
+    } while (vertex != first);
+    return moves;
+}
+
+/// Describes the moves of all vertices at a position to another one. \return false if lines forbid
+/// one, or if the sheets touch there otherwise
+bool Collapser::find_linked_moves(std::uint32_t position, std::span<LinkedMove> moves) const {
+    for (LinkedMove& each : moves) {
+        const bool is_first = first_at_position(each.ring.neighbors[0]) == position;
+        if (!surface_.find_move(each.ring, is_first ? 0 : each.ring.spokes - 1, each.move))
+            return false;
+    }
+    for (const LinkedMove& a : moves) {
+        for (const LinkedMove& b : moves) {
+            if (a.vertex == b.vertex) continue;
+            const auto end = b.ring.neighbors.begin() + static_cast<std::ptrdiff_t>(b.ring.spokes);
+            if (std::find(b.ring.neighbors.begin(), end, a.move.target) != end) return false;
+        }
+    }
+    return true;
+}
+
+bool Collapser::is_valid(std::span<const LinkedMove> moves) const {
+    return std::all_of(moves.begin(), moves.end(), [&](const LinkedMove& each) {
+        return is_valid(each.vertex, each.ring, each.move);
+    });
+}
+
+/// Finds the cheapest move of all vertices at a position together, like best_move(). Its cost is
+/// the mean over the sheets, because each of them loses a triangle, as at a boundary.
+float Collapser::best_linked_moves(std::uint32_t first, std::vector<LinkedMove>& best) const {
+    std::vector<LinkedMove> moves = linked_vertices(first);
+    if (moves.empty()) return no_collapse;
+    const bool careful = (flags_[first] & is_careful) != 0;
+    const double preference =
+        input_.for_picture ? length_preference_in_pictures : length_preference;
+    std::array<std::uint32_t, 2> ends = {
+        first_at_position(moves[0].ring.neighbors[0]),
+        first_at_position(moves[0].ring.neighbors[moves[0].ring.spokes - 1])};
+    std::sort(ends.begin(), ends.end());
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t end : ends) {
+        if (!find_linked_moves(end, moves)) continue;
+        double sum = 0.0;
+        bool is_within = true;
+        for (const LinkedMove& each : moves) {
+            const double error = error_->cost(each.vertex, each.move);
+            const glm::dvec3 along = input_.point(each.move.target) - input_.point(each.vertex);
+            const double squared_length = glm::dot(along, along);
+            sum += error_->priority(error + preference * squared_length * squared_length,
+                                    each.vertex, each.move);
+            is_within = is_within && error_->is_within_limit(error, each.vertex, each.move) &&
+                        error_->keeps_part(error, each.vertex, each.move);
+        }
+        const double mean = sum / static_cast<double>(moves.size());
+        if (!is_within || !(mean < least) || (careful && !is_valid(moves))) continue;
+        least = mean;
+        best = moves;
+    }
+    return std::isinf(least) ? no_collapse : static_cast<float>(std::min(least, 1e30));
+}
+
+/// Like collapse_if_cheap(), for all vertices at a position.
+std::size_t Collapser::collapse_linked_if_cheap(std::uint32_t first, float limit) {
+    std::vector<LinkedMove> moves;
+    flags_[first] &= static_cast<std::uint8_t>(~is_dirty);
+    costs_[first] = best_linked_moves(first, moves);
+    if (!(costs_[first] <= limit)) return 0;
+    if ((flags_[first] & is_careful) == 0 && !is_valid(moves)) {
+        costs_[first] = no_collapse;
+        flags_[first] |= is_careful | is_dirty;
+        return 0;
+    }
+    std::size_t removed = 0;
+    for (const LinkedMove& each : moves)
+        removed += collapse(each.vertex, each.ring, each.move);
+    return removed;
+}
+
 float Collapser::evaluate(std::uint32_t vertex, std::size_t& examined) const {
+    if ((flags_[vertex] & is_linked) != 0) {
+        std::vector<LinkedMove> moves;
+        const float cost = best_linked_moves(vertex, moves);
+        for (const LinkedMove& each : moves)
+            examined += each.ring.size;
+        return cost;
+    }
     Ring ring;
     const bool is_small = surface_.find_ring(vertex, ring);
     examined += ring.size;
@@ -354,9 +504,14 @@ float Collapser::evaluate(std::uint32_t vertex, std::size_t& examined) const {
 /// \return the number of triangles that it removes
 std::size_t Collapser::collapse(std::uint32_t vertex, const Ring& ring, const Move& move) {
     error_->merge(vertex, move);
-    const std::size_t removed = surface_.collapse(vertex, ring, move);
+    std::size_t removed = 0;
+    for (const std::size_t side : {ring.left(move.spoke), ring.right(move.spoke)}) {
+        if (side == Ring::no_triangle) continue;
+        removed += input_.counts.empty() ? 1 : input_.counts[triangle_of(ring.corners[side])];
+    }
+    surface_.collapse(vertex, ring, move);
     for (std::size_t i = 0; i < ring.spokes; ++i)
-        flags_[ring.neighbors[i]] |= is_dirty;
+        flags_[first_at_position(ring.neighbors[i])] |= is_dirty;
     return removed;
 }
 
@@ -388,10 +543,11 @@ std::size_t Collapser::execute(std::span<const std::uint64_t> order, float limit
     for (const std::uint64_t entry : order) {
         if (done == most || triangles_ <= target_) break;
         const auto vertex = static_cast<std::uint32_t>(entry);
-        const bool is_small = surface_.find_ring(vertex, ring);
-        examined += ring.size;
-        if (!is_small) ring.size = 0;
-        const std::size_t removed = collapse_if_cheap(vertex, ring, limit);
+        const bool is_alone = (flags_[vertex] & is_linked) == 0;
+        if (is_alone && !surface_.find_ring(vertex, ring)) ring.size = 0;
+        if (is_alone) examined += ring.size;
+        const std::size_t removed = is_alone ? collapse_if_cheap(vertex, ring, limit)
+                                             : collapse_linked_if_cheap(vertex, limit);
         if (removed == 0) continue;
         triangles_ -= removed;
         ++done;
@@ -416,6 +572,9 @@ void Collapser::assign_groups() {
     at_border_.assign(input_.positions.size(), 0);
     for (std::size_t i = 0; i < alive_.size(); ++i)
         groups_[alive_[i]] = static_cast<std::uint32_t>(i / group_size);
+    // Linked vertices are executed one after another.
+    for (std::uint32_t v = 0; v < input_.next_at_position.size(); ++v)
+        at_border_[v] = input_.next_at_position[v] != v ? 1 : 0;
     parallel_for(surface_.corners().size() / 3, group_size,
                  [&](std::size_t begin, std::size_t end) {
                      for (std::size_t first = 3 * begin; first < 3 * end; first += 3) {
@@ -510,7 +669,8 @@ void Collapser::run_pass(double fraction) {
     }
     if (order.empty()) return;
     constexpr std::size_t least = 16;
-    const std::size_t wanted = (triangles_ - target_ + 1) / 2;
+    const std::size_t wanted =
+        std::max<std::size_t>((triangles_ - target_ + 1) / (2 * max_count_), 1);
     const auto share = static_cast<std::size_t>(fraction * static_cast<double>(order.size()));
     const std::size_t count = std::min({order.size(), std::max(share, least), wanted});
     const auto last = order.begin() + static_cast<std::ptrdiff_t>(count - 1);
@@ -561,7 +721,8 @@ void Collapser::fit_positions() {
         if (surface_.is_removed(v) || (!input_.is_fixed.empty() && input_.is_fixed[v])) continue;
         const bool is_small = surface_.find_ring(v, ring);
         examined_ += ring.size;
-        if (!is_small || ring.has_border || !may_move(v, ring)) continue;
+        if (!is_small || ring.has_border || !may_move(v, ring) || (flags_[v] & is_linked) != 0)
+            continue;
         const glm::dvec3 offset = error_->fitted_offset(v, ring);
         const glm::vec3 before = input_.positions[v];
         const glm::vec3 after(input_.center + (input_.point(v) + offset) / input_.scale);
@@ -586,6 +747,11 @@ Obstacles Collapser::obstacles() const {
     }
     Ring ring;
     for (const std::uint32_t v : alive_) {
+        if ((flags_[v] & is_linked) != 0) {
+            if (surface_.is_removed(v)) continue;
+            ++(linked_vertices(v).empty() ? found.non_manifold : found.folds);
+            continue;
+        }
         if (surface_.is_removed(v) || !surface_.find_ring(v, ring)) continue;
         if (!may_move(v, ring)) {
             ++found.lines;
@@ -632,8 +798,8 @@ Collapsed Collapser::run() {
     if (input_.fits_positions && error_) fit_positions();
     result_.triangles = triangles_;
     result_.examined = examined_;
-    result_.remaining.reserve(triangles_);
-    result_.wedges.reserve(triangles_);
+    result_.remaining.reserve(triangles_ / max_count_);
+    result_.wedges.reserve(triangles_ / max_count_);
     for (Corner first = 0; first < surface_.corners().size(); first += 3) {
         if (surface_[first].vertex == none) continue;
         result_.remaining.push_back(first / 3);

@@ -52,8 +52,13 @@ struct CollapseInput {
     /// By attribute: the squared length for which a squared difference of 1 counts.
     std::vector<double> attribute_weights;
     bool has_texcoords = false;
-    bool keeps_borders = false;   ///< Vertices at a boundary do not move.
-    bool keeps_seams = false;     ///< Vertices at a seam or at the border of a part do not move.
+    bool keeps_borders = false;  ///< Vertices at a boundary do not move.
+    bool keeps_seams = false;    ///< Vertices at a seam or at the border of a part do not move.
+    /// By triangle: the number of triangles that it stands for. Empty: one each.
+    std::vector<std::uint32_t> counts;
+    /// By vertex, the next one at the same position, in a circle. Such vertices move together,
+    /// along lines that all of them have, or not at all. Empty: no vertices share a position.
+    std::vector<std::uint32_t> next_at_position;
     bool fits_positions = false;  ///< Remaining vertices move to where they fit the input best.
     std::vector<bool> is_fixed;   ///< By vertex: does not move then. Empty: none.
     /// By vertex: the diagonal of the bounding box of its connected part, in the unit of the
@@ -83,11 +88,12 @@ struct CollapseInput {
 /// Why vertices are left if fewer triangles were requested: how many of them could not move for
 /// each reason.
 struct Obstacles {
-    std::size_t non_manifold = 0;  ///< They are at non-manifold edges.
-    std::size_t lines = 0;         ///< Lines meet there, end there or must be kept.
-    std::size_t limits = 0;        ///< Each move exceeds the maximum error.
-    std::size_t parts = 0;         ///< Each move would take its part's shape.
-    std::size_t folds = 0;         ///< Each move would turn a triangle over or change the topology.
+    /// They are at positions where several sheets meet that cannot move together.
+    std::size_t non_manifold = 0;
+    std::size_t lines = 0;   ///< Lines meet there, end there or must be kept.
+    std::size_t limits = 0;  ///< Each move exceeds the maximum error.
+    std::size_t parts = 0;   ///< Each move would take its part's shape.
+    std::size_t folds = 0;   ///< Each move would turn a triangle over or change the topology.
 };
 
 /// The result of collapse_edges().
@@ -110,8 +116,10 @@ struct Collapsed {
 /// Collapses that flip a triangle, in space or in the texture, make its area zero, change the
 /// topology of the surface or merge lines are refused. Seams, borders of parts and boundaries are
 /// lines: a vertex on a line moves only along it, and a vertex where lines meet or end does not
-/// move. Vertices with more than `max_valence` triangles do not move until collapses around them
-/// have reduced that number. Ties: the lower index of a vertex wins.
+/// move. Vertices at one position, where sheets of a surface meet that is not manifold, move
+/// together along edges that are boundaries of all these sheets, which therefore stay together.
+/// Vertices with more than `max_valence` triangles do not move until collapses around them have
+/// reduced that number. Ties: the lower index of a vertex wins.
 Collapsed collapse_edges(CollapseInput input);
 
 /// The maximum number of triangles around a vertex that moves.

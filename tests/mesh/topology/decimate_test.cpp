@@ -276,7 +276,7 @@ TEST(Decimate, TheUnitOfLengthDoesNotMatter) {
     }
 }
 
-TEST(Decimate, NonManifoldEdgesStayAsTheyAre) {
+TEST(Decimate, SheetsStillMeetAtANonManifoldEdge) {
     // Three grids that share an edge.
     Mesh mesh;
     const Mesh grid = test::grid(8);
@@ -294,8 +294,8 @@ TEST(Decimate, NonManifoldEdgesStayAsTheyAre) {
     EXPECT_EQ(report.count("non-manifold edge"), 8U);
     Report again;
     decimated_to(small, 3, again);
-    EXPECT_EQ(again.count("non-manifold edge"), 8U) << "the sheets still meet in every edge";
-    EXPECT_LT(small.triangles.size(), mesh.triangles.size() / 4);
+    EXPECT_EQ(again.count("non-manifold edge"), 1U) << "the line is one edge of all sheets";
+    EXPECT_LT(small.triangles.size(), 10U);
 }
 
 TEST(Decimate, NonFiniteTrianglesComeBackAndDegenerateOnesDoNot) {
