@@ -66,6 +66,7 @@ struct LevelResult {
     std::size_t triangles = 0;
     std::size_t vertices = 0;
     SurfaceDistance distance;  ///< Of the input (a) and the level (b).
+    bool is_sampled = false;   ///< Whether some of the distances are those of random samples.
     /// The largest distance in pixels, at the size at which the mesh switches.
     double distance_pixels = 0.0;
     double pixels = 0.0;         ///< The smallest size on the screen at which a mesh switches.
@@ -145,6 +146,10 @@ class LevelMaker {
     LevelResult make(double wanted);
     void decimate(LodMesh& mesh, double ratio, LevelResult& level);
     void choose_sizes(LevelResult& level);
+    [[nodiscard]] bool has_pictures(std::size_t mesh) const {
+        return pictures_ && std::find(drawn_.begin(), drawn_.end(), mesh) != drawn_.end();
+    }
+    [[nodiscard]] SurfaceDistance measured_distance(std::size_t mesh) const;
     [[nodiscard]] std::optional<LevelSwitch> measured_switch(std::size_t mesh, double start,
                                                              double most);
     void write(std::size_t level);
@@ -261,15 +266,27 @@ std::optional<LevelSwitch> LevelMaker::measured_switch(std::size_t mesh, double 
     }
 }
 
+/// Measures the distance of a mesh from its level: at random samples if pictures choose its size,
+/// otherwise in full.
+SurfaceDistance LevelMaker::measured_distance(std::size_t mesh) const {
+    const Mesh& before = meshes_[mesh].surface;
+    if (!has_pictures(mesh)) return surface_distance(before, surfaces_[mesh]);
+    const std::size_t samples = std::clamp<std::size_t>(before.triangles.size() / 32, 500, 5'000);
+    return sampled_distance(before, surfaces_[mesh], samples, samples,
+                            static_cast<std::uint32_t>(mesh));
+}
+
 /// Measures the level, and chooses the size at which it takes over for each mesh.
 void LevelMaker::choose_sizes(LevelResult& level) {
+    std::vector<bool> are_sampled;
     std::vector<SurfaceDistance> distances = stages_.run("measure", [&] {
         std::vector<SurfaceDistance> measured;
-        for (std::size_t i = 0; i < meshes_.size(); ++i)
-            measured.push_back(surface_distance(meshes_[i].surface, surfaces_[i]));
+        for (std::size_t i = 0; i < meshes_.size(); ++i) {
+            are_sampled.push_back(has_pictures(i));
+            measured.push_back(measured_distance(i));
+        }
         return measured;
     });
-    level.distance = joined_distance(distances);
     level.pixels = std::numeric_limits<double>::infinity();
     stages_.run("draw", [&] {
         if (pictures_) {
@@ -280,15 +297,26 @@ void LevelMaker::choose_sizes(LevelResult& level) {
         }
         for (std::size_t i = 0; i < meshes_.size(); ++i) {
             LodMesh& mesh = meshes_[i];
-            const double largest = std::max(distances[i].from_a.max, distances[i].from_b.max);
             // The size at which the largest distance has the error on the screen.
-            double pixels = largest > 0.0 ? command_.error() * mesh.diameter / largest
-                                          : lod_screen_height * 4.0;
-            if (const auto found = measured_switch(i, pixels, mesh.last_pixels)) {
-                // Sizes beyond the screen's height are not drawn.
-                const bool is_beyond = found->flip <= found->moved_flip && pixels > found->pixels &&
-                                       2.0 * found->pixels > lod_screen_height;
-                if (!is_beyond) pixels = found->pixels;
+            const auto pixels_by_distance = [&] {
+                const double largest = std::max(distances[i].from_a.max, distances[i].from_b.max);
+                return largest > 0.0 ? command_.error() * mesh.diameter / largest
+                                     : lod_screen_height * 4.0;
+            };
+            double pixels = pixels_by_distance();
+            const auto found = measured_switch(i, pixels, mesh.last_pixels);
+            // Sizes beyond the screen's height are not drawn.
+            const bool is_beyond = found && found->flip <= found->moved_flip &&
+                                   pixels > found->pixels &&
+                                   2.0 * found->pixels > lod_screen_height;
+            if ((!found || is_beyond) && are_sampled[i]) {
+                // A distance that decides is that of all vertices.
+                are_sampled[i] = false;
+                distances[i] = surface_distance(mesh.surface, surfaces_[i]);
+                pixels = pixels_by_distance();
+            }
+            if (found) {
+                if (!is_beyond || pixels < found->pixels) pixels = found->pixels;
                 if (!level.flip || found->flip > *level.flip) {
                     level.flip = found->flip;
                     level.moved_flip = found->moved_flip;
@@ -302,12 +330,15 @@ void LevelMaker::choose_sizes(LevelResult& level) {
             level.coverage = std::min(level.coverage, coverage);
             level.meshes[i].pixels = pixels;
             level.meshes[i].coverage = coverage;
+            level.is_sampled = level.is_sampled || are_sampled[i];
+            const double largest = std::max(distances[i].from_a.max, distances[i].from_b.max);
             if (mesh.diameter > 0.0)
                 level.distance_pixels =
                     std::max(level.distance_pixels, largest * pixels / mesh.diameter);
         }
         return 0;
     });
+    level.distance = joined_distance(distances);
 }
 
 /// Returns the file of a level: OUT_LOD1.glb for OUT.glb.
@@ -413,8 +444,9 @@ LodsResult make_levels(const LodsCommand& command, const Job& job, Stages& stage
 
 std::string level_text(const LevelResult& level, std::size_t number) {
     const double largest = std::max(level.distance.from_a.max, level.distance.from_b.max);
-    std::string text = fmt::format("LOD{}: {}, largest distance {:.3g}, used ", number,
-                                   counted(level.triangles, "triangle"), largest);
+    std::string text = fmt::format("LOD{}: {}, largest distance {}{:.3g}, used ", number,
+                                   counted(level.triangles, "triangle"),
+                                   level.is_sampled ? "of samples " : "", largest);
     if (level.coverage < 1.0) {
         text += fmt::format("below {:.4g} pixels, {:.3g} % of the screen", level.pixels,
                             100.0 * level.coverage);
@@ -453,7 +485,8 @@ Summary lods_summary(const LodsCommand& command, const Job& job, const LodsResul
                      {"vertices", level.vertices},
                      {"distance",
                       {{"of_input", distance_json(level.distance.from_a)},
-                       {"of_output", distance_json(level.distance.from_b)}}},
+                       {"of_output", distance_json(level.distance.from_b)},
+                       {"sampled", level.is_sampled}}},
                      {"distance_pixels", level.distance_pixels},
                      {"pixels", level.pixels},
                      {"coverage", level.coverage},
