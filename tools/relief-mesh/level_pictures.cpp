@@ -59,10 +59,10 @@ double pixels_at(int step) {
     return pixels;
 }
 
-/// The largest size that is drawn, 362 pixels. A larger one is compared in pictures of this size,
+/// The largest size that is drawn, 215 pixels. A larger one is compared in pictures of this size,
 /// with an error that is the same part of the mesh: both differences shrink alike. The result
-/// differs by up to 2 steps from that of larger pictures, which take several times as long.
-constexpr int max_drawn_step = 34;
+/// differs by up to 3 steps from that of larger pictures, which take several times as long.
+constexpr int max_drawn_step = 31;
 
 /// The search begins with at most 64 pixels, because small pictures cost less and predict the
 /// others.

@@ -63,7 +63,7 @@ class LevelPictures {
 
     /// Finds the largest size, up to the screen's height, at which the level of a mesh differs from
     /// the input, in each of three views, no more than the input that is moved by the error. Sizes
-    /// are powers of 2^(1/4), at least 4 pixels. Above 362 pixels, pictures of this size are
+    /// are powers of 2^(1/4), at least 4 pixels. Above 215 pixels, pictures of this size are
     /// compared, with an error that is the same part of the mesh.
     ///
     /// \param mesh   index in the lists of set_input() and set_level()

@@ -145,6 +145,10 @@ struct CornerNormals {
 /// \throws InvalidInput as vertex_normals(); if the angle is not within 0 to pi; if there are
 ///         groups, but not one for each triangle
 ///
+/// With exact welding, triangles at the same positions with opposite windings are the two sides of
+/// a wall, which are counted and never averaged: at their edges, triangles in opposite directions
+/// are joined, the flattest pair first, if the angle is within the limit.
+///
 /// Triangles without area join no others and contribute nothing. If the corners of one are at three
 /// positions on a line, the triangles along its longest side and along its other sides share an
 /// edge; if two corners are at one position, the triangles at both sides share one already. So
