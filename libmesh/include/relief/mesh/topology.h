@@ -74,8 +74,8 @@ struct DecimateOptions {
 ///
 /// \param mesh  valid (mesh.h); vertices at equal positions count as one
 /// \param report  counts omitted elements (collapsed and repeated triangles, isolated vertices),
-///         double-sided triangles, non-manifold edges, triangles with a non-finite corner, which are
-///         not simplified, and a target number of triangles that could not be reached
+///         double-sided triangles, non-manifold edges, triangles with a non-finite corner, which
+///         are not simplified, and a target number of triangles that could not be reached
 /// \param deformation  how the vertices move, by vertex; where it differs between vertices at one
 ///         position, there is a seam
 /// \return a subset of the vertices with all attributes, in their order; with `fit_positions`, at
@@ -90,13 +90,13 @@ struct DecimateOptions {
 /// meshes stay closed, no triangle is inverted in the texture or in space (at each corner of a
 /// triangle that changes, one of the input's triangles is within 90 degrees), and separate
 /// components neither merge nor vanish, and keep their shapes: no vertex moves away from its
-/// component by more than a fifth of its size, and no error exceeds 3 % of it. Triangles at the same
-/// positions, such as the two sides of a wall, are reduced as one, and each keeps its attributes.
-/// Sheets that meet at non-manifold edges change there together or not at all. The target number of
-/// triangles is met to within one collapse unless that would violate these rules. The same input gives the
-/// same bits for any order of triangles and vertices and any first corner of triangles, except that
-/// computed tangents depend on the latter (tangents.h). Collapsed triangles have no influence. The
-/// time is linear for all shapes, except for sorting.
+/// component by more than a fifth of its size, and no error exceeds 3 % of it. Triangles at the
+/// same positions, such as the two sides of a wall, are reduced as one, and each keeps its
+/// attributes. Sheets that meet at non-manifold edges change there together or not at all. The
+/// target number of triangles is met to within one collapse unless that would violate these rules.
+/// The same input gives the same bits for any order of triangles and vertices and any first corner
+/// of triangles, except that computed tangents depend on the latter (tangents.h). Collapsed
+/// triangles have no influence. The time is linear for all shapes, except for sorting.
 ///
 /// Source: [Garland and Heckbert 1997], [Hoppe 1999].
 FramedMesh decimated(const Mesh& mesh, const DecimateOptions& options,
