@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Texture coordinates for spheres with waves of growing size, with the time of each stage, the
 // slope and the memory: `relief-unwrap-bench [TRIANGLES...]`. `relief-unwrap-bench files FILE...`
-// does so for models (.obj, .ply, .stl, .off). `relief-unwrap-bench reference LIBRARY [FILE...]`
+// does so for models (.obj, .ply, .stl, .off), and `relief-unwrap-bench hard` for inputs that other
+// programs find hard. `relief-unwrap-bench reference LIBRARY [FILE...]`
 // compares with another library behind the function of bench/peers, in interleaved rounds; both
 // results are judged by measure_texcoords(). All times are processor times, so that other programs
 // do not add to them.
@@ -20,6 +21,7 @@
 #include <vector>
 
 #include "bench_support.h"
+#include "mesh/hard_unwrap_meshes.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/statistics.h"
@@ -239,6 +241,9 @@ int run(int argc, char** argv) {
     if (first == "files") {
         for (int i = 2; i < argc; ++i)
             inputs.emplace_back([file = std::string(argv[i])] { return model(file); });
+    } else if (first == "hard") {
+        for (auto& [name, mesh] : hard_unwrap_meshes())
+            inputs.emplace_back([input = Input{name, std::move(mesh)}] { return input; });
     } else {
         std::vector<std::size_t> sizes;
         for (int i = 1; i < argc; ++i)
