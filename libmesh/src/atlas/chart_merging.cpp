@@ -132,7 +132,10 @@ class ChartMerger {
         std::erase_if(pairs, [&](Pair& pair) {
             pair.share = pair.length / std::min(perimeters_[pair.a], perimeters_[pair.b]);
             const std::uint32_t small = smaller(pair);
-            return pair.share < min_border_share || failures_[small] >= max_failures ||
+            // A closed union cannot be flattened.
+            const double longer = std::max(perimeters_[pair.a], perimeters_[pair.b]);
+            return pair.length > (1.0 - 1e-9) * longer || pair.share < min_border_share ||
+                   failures_[small] >= max_failures ||
                    (is_large(pair) && pair.creases > max_crease_share * pair.length) ||
                    std::binary_search(failed_.begin(), failed_.end(), std::pair(pair.a, pair.b));
         });

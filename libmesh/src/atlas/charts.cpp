@@ -116,6 +116,9 @@ Cone united(const Cone& a, const Cone& b) {
     return {portable::cos(turn) * a.axis + (portable::sin(turn) / length) * across, half};
 }
 
+/// The largest cost of a merge: it bounds the length of charts.
+constexpr float max_chart_cost = 2.0F;
+
 class ChartClusters {
   public:
     ChartClusters(std::size_t count, const ChartLimits& limits)
@@ -148,8 +151,12 @@ class ChartClusters {
         if (united(a.cone, b.cone).half_angle > limits_.cone) return infinite;
         const double perimeter = std::max(a.perimeter + b.perimeter - 2.0 * edge.length, 0.0);
         const double shared = edge.length / std::max(std::min(a.perimeter, b.perimeter), 1e-300);
-        return static_cast<float>(std::max(
-            std::max(spread, 0.0) + 0.01 * elongation(perimeter, area) - 0.02 * shared, 0.0));
+        const double shape = elongation(perimeter, area);
+        const double cost = std::max(std::max(spread, 0.0) + 0.01 * shape - 0.02 * shared, 0.0);
+        // A union that is closer to a disk than both parts may always form, however long it is.
+        const bool is_rounder =
+            shape < std::min(elongation(a.perimeter, a.area), elongation(b.perimeter, b.area));
+        return std::min(static_cast<float>(cost), is_rounder ? max_chart_cost : infinite);
     }
     void merge(const ClusterEdge& edge) {
         Cluster& a = clusters_[edge.a];
@@ -177,7 +184,7 @@ class ChartClusters {
 };
 
 /// Merges first what costs little, in about 40 steps.
-constexpr CostLimit chart_costs{0.005F, 1.15F, 2.0F};
+constexpr CostLimit chart_costs{0.005F, 1.15F, max_chart_cost};
 
 /// The borders between faces of a range, which are numbered from 0.
 std::vector<ClusterEdge> borders_between(const AtlasSurface& surface, FaceRange faces) {

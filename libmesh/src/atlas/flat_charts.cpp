@@ -124,8 +124,8 @@ class ChartFlattener {
             chart.coordinates = std::move(projection);
             return std::nullopt;
         }
-        std::vector<glm::dvec2> flat =
-            detail::flattened(surface_, chart.mesh, projection, limits_.method);
+        std::vector<glm::dvec2> flat = detail::flattened(
+            surface_, chart.mesh, projection, {limits_.method, limits_.max_stretch, min_area_});
         const std::optional<std::uint32_t> problem =
             problem_of(chart.mesh, flat, limits_.max_stretch);
         if (!problem) {

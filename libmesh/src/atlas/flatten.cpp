@@ -291,6 +291,177 @@ void restore_area(const AtlasSurface& surface, const ChartMesh& chart,
         each *= scale;
 }
 
+// As rigid as possible.
+
+/// The triangles of a chart, which keep their shape and size as far as possible.
+class RigidTriangles {
+  public:
+    RigidTriangles(const ChartMesh& chart, std::vector<FlatTriangle> triangles)
+        : chart_(chart), triangles_(std::move(triangles)), weights_(triangles_.size()) {
+        for (std::size_t i = 0; i < triangles_.size(); ++i)
+            weights_[i] = limited(cotangents_of(triangles_[i]));
+    }
+
+    [[nodiscard]] FactoredMatrix factored() const {
+        EdgeMatrix matrix(chart_.positions.size(), 3 * triangles_.size());
+        for (std::size_t i = 0; i < triangles_.size(); ++i)
+            for (std::size_t k = 0; k < 3; ++k)
+                matrix.add_edge(vertex(i, k), vertex(i, k + 1), weights_[i][k]);
+        matrix.add(0, 1.0);  // Attracts one vertex to the origin, which fixes the translation.
+        return matrix.factored();
+    }
+
+    /// Rotates a triangle to its present coordinates, and calls visit(a, b, weight, edge) for its
+    /// edges: `edge` is where a should be, seen from b.
+    template <typename Visit>
+    void fit(std::size_t i, std::span<const glm::dvec2> coordinates, const Visit& visit) const {
+        const std::array<glm::dvec2, 3> x = triangles_[i].corners();
+        double cosine = 0.0;
+        double sine = 0.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::dvec2 u = coordinates[vertex(i, k)] - coordinates[vertex(i, k + 1)];
+            const glm::dvec2 e = x[k] - x[(k + 1) % 3];
+            cosine += weights_[i][k] * (u.x * e.x + u.y * e.y);
+            sine += weights_[i][k] * (u.y * e.x - u.x * e.y);
+        }
+        const double length = std::sqrt(cosine * cosine + sine * sine);
+        if (!(length > 0.0)) {
+            cosine = 1.0;
+            sine = 0.0;
+        } else {
+            cosine /= length;
+            sine /= length;
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::dvec2 e = weights_[i][k] * (x[k] - x[(k + 1) % 3]);
+            visit(vertex(i, k), vertex(i, k + 1), weights_[i][k],
+                  glm::dvec2(cosine * e.x - sine * e.y, sine * e.x + cosine * e.y));
+        }
+    }
+    [[nodiscard]] std::uint32_t vertex(std::size_t triangle, std::size_t corner) const {
+        return chart_.vertices[triangle][static_cast<glm::length_t>(corner % 3)];
+    }
+    [[nodiscard]] std::size_t count() const { return triangles_.size(); }
+
+  private:
+    const ChartMesh& chart_;
+    std::vector<FlatTriangle> triangles_;
+    std::vector<Cotangents> weights_;
+};
+
+/// Moves the vertices near triangles that exceed the stretch limit, which gain weight until they
+/// are within it.
+class StretchRepair {
+  public:
+    StretchRepair(const AtlasSurface& surface, const ChartMesh& chart,
+                  const RigidTriangles& triangles, double max_stretch, double min_area)
+        : surface_(surface),
+          chart_(chart),
+          triangles_(triangles),
+          max_stretch_(max_stretch),
+          min_area_(min_area) {}
+
+    /// Each sweep moves vertices to the mean of the places where their triangles fit best. Without
+    /// success, nothing changes.
+    void repair(std::vector<glm::dvec2>& coordinates) {
+        std::vector<std::size_t> bad;
+        for (std::size_t i = 0; i < triangles_.count(); ++i)
+            if (exceeds(i, coordinates, max_stretch_)) bad.push_back(i);
+        if (bad.empty() || bad.size() > max_repaired + triangles_.count() / faces_per_repaired)
+            return;
+        find_region(bad);
+        std::vector<glm::dvec2> before;
+        for (const std::uint32_t v : free_)
+            before.push_back(coordinates[v]);
+        std::vector<double> factor(region_.size(), 1.0);
+        std::vector<glm::dvec2> sum(coordinates.size());
+        std::vector<double> weight(coordinates.size());
+        for (int sweep = 0; sweep < repair_sweeps; ++sweep) {
+            bool is_within = true;
+            for (std::size_t r = 0; r < region_.size(); ++r) {
+                if (!exceeds(region_[r], coordinates, repaired_share * max_stretch_)) continue;
+                factor[r] *= repair_factor;
+                is_within = false;
+            }
+            if (is_within) return;
+            for (const std::uint32_t v : free_) {
+                sum[v] = glm::dvec2(0.0);
+                weight[v] = 0.0;
+            }
+            for (std::size_t r = 0; r < region_.size(); ++r) {
+                triangles_.fit(region_[r], coordinates,
+                               [&](std::uint32_t a, std::uint32_t b, double w, glm::dvec2 edge) {
+                                   sum[a] += factor[r] * (w * coordinates[b] + edge);
+                                   sum[b] += factor[r] * (w * coordinates[a] - edge);
+                                   weight[a] += factor[r] * w;
+                                   weight[b] += factor[r] * w;
+                               });
+            }
+            for (const std::uint32_t v : free_)
+                coordinates[v] = sum[v] / weight[v];
+        }
+        for (std::size_t i = 0; i < free_.size(); ++i)
+            coordinates[free_[i]] = before[i];
+    }
+
+  private:
+    /// So many triangles are repaired, and one of this number.
+    static constexpr std::size_t max_repaired = 3;
+    static constexpr std::size_t faces_per_repaired = 1000;
+    static constexpr int repair_sweeps = 60;
+    /// The growth of the weight in each sweep above this share of the limit.
+    static constexpr double repair_factor = 1.3;
+    static constexpr double repaired_share = 0.97;
+    /// Vertices that move: so many rings around the triangles.
+    static constexpr int free_rings = 2;
+
+    [[nodiscard]] bool exceeds(std::size_t i, std::span<const glm::dvec2> coordinates,
+                               double limit) const {
+        const std::uint32_t face = chart_.faces[i];
+        const Stretch stretch =
+            stretch_of(surface_, face,
+                       {coordinates[triangles_.vertex(i, 0)], coordinates[triangles_.vertex(i, 1)],
+                        coordinates[triangles_.vertex(i, 2)]});
+        if (!(stretch.smallest > 0.0)) return true;
+        const double area = stretch.largest * stretch.smallest;
+        return surface_.areas[face] >= min_area_ &&
+               std::max({stretch.largest / stretch.smallest, area, 1.0 / area}) > limit;
+    }
+
+    /// Frees the vertices near some triangles; the region is the triangles that have any of them.
+    void find_region(std::span<const std::size_t> bad) {
+        is_free_.assign(chart_.positions.size(), false);
+        for (const std::size_t i : bad)
+            for (std::size_t k = 0; k < 3; ++k)
+                is_free_[triangles_.vertex(i, k)] = true;
+        const auto touches = [&](std::size_t i) {
+            return is_free_[triangles_.vertex(i, 0)] || is_free_[triangles_.vertex(i, 1)] ||
+                   is_free_[triangles_.vertex(i, 2)];
+        };
+        for (int ring = 0; ring < free_rings; ++ring) {
+            std::vector<std::size_t> touched;
+            for (std::size_t i = 0; i < triangles_.count(); ++i)
+                if (touches(i)) touched.push_back(i);
+            for (const std::size_t i : touched)
+                for (std::size_t k = 0; k < 3; ++k)
+                    is_free_[triangles_.vertex(i, k)] = true;
+        }
+        for (std::size_t i = 0; i < triangles_.count(); ++i)
+            if (touches(i)) region_.push_back(i);
+        for (std::uint32_t v = 0; v < is_free_.size(); ++v)
+            if (is_free_[v]) free_.push_back(v);
+    }
+
+    const AtlasSurface& surface_;
+    const ChartMesh& chart_;
+    const RigidTriangles& triangles_;
+    double max_stretch_;
+    double min_area_;
+    std::vector<bool> is_free_;        ///< Of each vertex.
+    std::vector<std::uint32_t> free_;  ///< Ascending.
+    std::vector<std::size_t> region_;  ///< Triangles with free vertices, ascending.
+};
+
 }  // namespace
 
 ChartMesh chart_mesh(const AtlasSurface& surface, const ChartMembers& members,
@@ -347,68 +518,38 @@ std::vector<glm::dvec2> projected(const AtlasSurface& surface, const ChartMesh& 
 }
 
 std::vector<glm::dvec2> flattened(const AtlasSurface& surface, const ChartMesh& chart,
-                                  std::vector<glm::dvec2> start, Flattening method) {
+                                  std::vector<glm::dvec2> start, const FlatteningTask& task) {
     const std::size_t face_count = chart.faces.size();
-    std::vector<FlatTriangle> triangles(face_count);
+    std::vector<FlatTriangle> shapes(face_count);
     for (std::size_t i = 0; i < face_count; ++i)
-        triangles[i] = flat(surface, chart.faces[i]);
-    if (method == Flattening::conformal) {
-        const auto scales = conformal_scales(surface, chart, triangles);
+        shapes[i] = flat(surface, chart.faces[i]);
+    if (task.method == Flattening::conformal) {
+        const auto scales = conformal_scales(surface, chart, shapes);
         if (!scales) return std::vector<glm::dvec2>(start.size(), glm::dvec2(0.0));
         for (std::size_t i = 0; i < face_count; ++i)
-            triangles[i] = triangles[i].scaled((*scales)[i]);
+            shapes[i] = shapes[i].scaled((*scales)[i]);
     }
-    std::vector<Cotangents> weights(face_count);
-    EdgeMatrix matrix(chart.positions.size(), 3 * face_count);
-    for (std::size_t i = 0; i < face_count; ++i) {
-        weights[i] = limited(cotangents_of(triangles[i]));
-        for (std::size_t k = 0; k < 3; ++k)
-            matrix.add_edge(chart.vertices[i][static_cast<glm::length_t>(k)],
-                            chart.vertices[i][static_cast<glm::length_t>((k + 1) % 3)],
-                            weights[i][k]);
-    }
-    matrix.add(0, 1.0);  // Attracts one vertex to the origin, which fixes the translation.
-    FactoredMatrix factored = matrix.factored();
+    const RigidTriangles triangles(chart, std::move(shapes));
+    FactoredMatrix factored = triangles.factored();
     if (!factored.is_valid()) return start;
     std::vector<glm::dvec2> right(chart.positions.size());
     std::vector<glm::dvec2> result = std::move(start);
     const int iterations =
-        method == Flattening::conformal ? conformal_iterations : rigid_iterations;
+        task.method == Flattening::conformal ? conformal_iterations : rigid_iterations;
     for (int round = 0; round < iterations; ++round) {
         check_cancelled();
         std::fill(right.begin(), right.end(), glm::dvec2(0.0));
-        for (std::size_t i = 0; i < face_count; ++i) {
-            const std::array<glm::dvec2, 3> x = triangles[i].corners();
-            double cosine = 0.0;
-            double sine = 0.0;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const auto& v = chart.vertices[i];
-                const glm::dvec2 u = result[v[static_cast<glm::length_t>(k)]] -
-                                     result[v[static_cast<glm::length_t>((k + 1) % 3)]];
-                const glm::dvec2 e = x[k] - x[(k + 1) % 3];
-                cosine += weights[i][k] * (u.x * e.x + u.y * e.y);
-                sine += weights[i][k] * (u.y * e.x - u.x * e.y);
-            }
-            const double length = std::sqrt(cosine * cosine + sine * sine);
-            if (!(length > 0.0)) {
-                cosine = 1.0;
-                sine = 0.0;
-            } else {
-                cosine /= length;
-                sine /= length;
-            }
-            for (std::size_t k = 0; k < 3; ++k) {
-                const auto& v = chart.vertices[i];
-                const glm::dvec2 e = weights[i][k] * (x[k] - x[(k + 1) % 3]);
-                const glm::dvec2 turned(cosine * e.x - sine * e.y, sine * e.x + cosine * e.y);
-                right[v[static_cast<glm::length_t>(k)]] += turned;
-                right[v[static_cast<glm::length_t>((k + 1) % 3)]] -= turned;
-            }
-        }
+        for (std::size_t i = 0; i < face_count; ++i)
+            triangles.fit(i, result,
+                          [&](std::uint32_t a, std::uint32_t b, double, const glm::dvec2& edge) {
+                              right[a] += edge;
+                              right[b] -= edge;
+                          });
         factored.solve(right);
         result.swap(right);
     }
-    if (method == Flattening::conformal) restore_area(surface, chart, result);
+    if (task.method == Flattening::conformal) restore_area(surface, chart, result);
+    StretchRepair(surface, chart, triangles, task.max_stretch, task.min_area).repair(result);
     return result;
 }
 

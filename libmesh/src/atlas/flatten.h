@@ -72,6 +72,13 @@ ChartMesh chart_mesh(const AtlasSurface& surface, const ChartMembers& members,
 /// Projects a chart along the mean of its normals.
 std::vector<glm::dvec2> projected(const AtlasSurface& surface, const ChartMesh& chart);
 
+/// How a chart is flattened. Triangles from this area on should not exceed the stretch limit.
+struct FlatteningTask {
+    Flattening method = Flattening::arap;
+    double max_stretch = 4.0;
+    double min_area = 0.0;
+};
+
 /// Flattens a connected chart. \param start from projected()
 ///
 /// Each iteration finds the rotations of the triangles, then the coordinates that fit them best;
@@ -81,7 +88,7 @@ std::vector<glm::dvec2> projected(const AtlasSurface& surface, const ChartMesh& 
 /// [Sawhney and Crane 2017].
 /// \return has inverted or flat triangles if there is no solution
 std::vector<glm::dvec2> flattened(const AtlasSurface& surface, const ChartMesh& chart,
-                                  std::vector<glm::dvec2> start, Flattening method);
+                                  std::vector<glm::dvec2> start, const FlatteningTask& task);
 
 /// How a triangle is stretched by its coordinates.
 struct Stretch {

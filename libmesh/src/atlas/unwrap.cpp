@@ -41,6 +41,8 @@ constexpr double expected_use = 0.65;
 /// The length of a chart, in sides of the map, above which it is divided instead of shrinking all
 /// charts.
 constexpr double max_overlength = 1.25;
+/// The same for several tiles: each should have several charts, so that all can be filled.
+constexpr double max_overlength_of_tiles = 0.75;
 
 void check(const UnwrapOptions& options, const Mesh& mesh) {
     const auto refuse = [](const std::string& what, double value, const std::string& range) {
@@ -145,28 +147,31 @@ Atlas packed_atlas(const AtlasSurface& surface, std::vector<FlatChart> charts,
         TiledPacking tiled = packed_into_tiles(charts, layout.packing, layout.tiles);
         const Packing& packing = tiled.packing;
         atlas.points.clear();
-        std::vector<FlatChart> next;
-        bool is_sound = true;
+        std::vector<std::optional<std::uint32_t>> problems;
         for (std::size_t i = 0; i < charts.size(); ++i) {
             atlas.points.push_back(
                 lattice_points(charts[i], packing.placements[i], packing.texels_per_unit, layout));
             widen_single_triangle(charts[i], atlas.points[i]);
-            const auto problem = overlap_in(charts[i].mesh, atlas.points[i]);
-            if (!problem) {
-                next.push_back(charts[i]);
-                continue;
-            }
-            is_sound = false;
-            for (FlatChart& part : divided_further(surface, members, charts[i], *problem, limits)) {
-                density.apply(part);
-                next.push_back(std::move(part));
-            }
+            problems.push_back(overlap_in(charts[i].mesh, atlas.points[i]));
         }
-        if (is_sound) {
+        if (std::none_of(problems.begin(), problems.end(),
+                         [](const auto& problem) { return problem.has_value(); })) {
             atlas.charts = std::move(charts);
             atlas.tile = std::move(tiled.tile);
             atlas.texels_per_unit = packing.texels_per_unit;
             return atlas;
+        }
+        std::vector<FlatChart> next;
+        for (std::size_t i = 0; i < charts.size(); ++i) {
+            if (!problems[i]) {
+                next.push_back(std::move(charts[i]));
+                continue;
+            }
+            for (FlatChart& part :
+                 divided_further(surface, members, charts[i], *problems[i], limits)) {
+                density.apply(part);
+                next.push_back(std::move(part));
+            }
         }
         charts = std::move(next);
     }
@@ -202,10 +207,12 @@ Atlas new_atlas(const AtlasSurface& surface, const UnwrapOptions& options, Layou
     limits.method = options.flattening;
     limits.max_stretch = options.max_stretch;
     limits.lattice_scale = texels_per_unit * layout.lattice_size / std::max(size.x, size.y);
-    limits.max_side = max_overlength * std::max(size.x, size.y) / texels_per_unit;
+    limits.max_side = (options.tiles == 1 ? max_overlength : max_overlength_of_tiles) *
+                      std::max(size.x, size.y) / texels_per_unit;
     ChartMembers members(segmentation.chart);
     std::vector<FlatChart> charts = during(
         "flattening charts", [&] { return flat_charts(surface, segmentation, members, limits); });
+    segmentation = {};
     if (options.texels_per_unit) layout.packing.texels_per_unit = texels_per_unit;
     const DensityScale density(surface, options.densities);
     for (FlatChart& chart : charts)

@@ -9,10 +9,12 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <random>
 #include <vector>
 
 #include "atlas/surface.h"
 #include "relief/mesh/unwrap.h"
+#include "support/hard_meshes.h"
 
 namespace relief {
 namespace {
@@ -53,7 +55,7 @@ struct Flat {
     double area_ratio = 0.0;     ///< Of the area in the plane to that on the surface.
 };
 
-Flat flattened_zone(const Mesh& mesh, Flattening method) {
+Flat flattened_mesh(const Mesh& mesh, const detail::FlatteningTask& task) {
     Report report;
     const detail::AtlasSurface surface = detail::atlas_surface(mesh, {}, report);
     std::vector<std::uint32_t> faces(surface.faces.size());
@@ -62,7 +64,7 @@ Flat flattened_zone(const Mesh& mesh, Flattening method) {
     members.assign(faces);
     const detail::ChartMesh chart = detail::chart_mesh(surface, members, faces);
     const std::vector<glm::dvec2> coordinates =
-        detail::flattened(surface, chart, detail::projected(surface, chart), method);
+        detail::flattened(surface, chart, detail::projected(surface, chart), task);
     Flat flat;
     double flat_area = 0.0;
     double area = 0.0;
@@ -102,6 +104,10 @@ double deviation_from_stereographic(const Flat& flat, double lowest_z) {
     return high / low - 1.0;
 }
 
+Flat flattened_zone(const Mesh& mesh, Flattening method) {
+    return flattened_mesh(mesh, {.method = method});
+}
+
 TEST(Flattening, IsStereographicForACap) {
     const double angle = std::numbers::pi / 3.0;
     const Mesh cap = spherical_zone(0.0, angle, 24);
@@ -122,6 +128,29 @@ TEST(Flattening, IsStereographicAroundAHole) {
     const Flat ring = flattened_zone(spherical_zone(hole, angle, 24), Flattening::conformal);
     EXPECT_LT(deviation_from_stereographic(ring, std::cos(angle - (angle - hole) / 72.0)), 0.02);
     EXPECT_LT(*std::max_element(ring.ratio.begin(), ring.ratio.end()), 1.03);
+}
+
+// Noise stretches single triangles more than all others.
+TEST(Flattening, RepairsSingleTrianglesAboveTheStretchLimit) {
+    Mesh mesh = test::flat_grid(40);
+    std::mt19937 random(1);
+    for (glm::vec3& position : mesh.positions)
+        position.z = (static_cast<float>(random()) * 0x1p-32F - 0.5F) * 2.0F;
+    for (const Flattening method : {Flattening::arap, Flattening::conformal}) {
+        const auto largest = [&](double max_stretch) {
+            const Flat flat = flattened_mesh(mesh, {.method = method, .max_stretch = max_stretch});
+            double result = 1.0;
+            for (std::size_t i = 0; i < flat.scale.size(); ++i) {
+                const double area = flat.scale[i] * flat.scale[i];
+                result = std::max({result, flat.ratio[i], area, 1.0 / area});
+            }
+            return result;
+        };
+        const double unrepaired = largest(1e6);
+        ASSERT_GT(unrepaired, 1.5);
+        const double limit = 1.0 + 0.95 * (unrepaired - 1.0);
+        EXPECT_LE(largest(limit), limit);
+    }
 }
 
 TEST(Flattening, KeepsAnglesOfWholeMeshes) {

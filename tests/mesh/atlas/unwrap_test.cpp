@@ -535,6 +535,20 @@ void append_copy(Mesh& mesh, const Mesh& part, const glm::mat3& rotation, const 
         mesh.triangles.push_back(triangle + first);
 }
 
+// Few charts that are large for one tile are divided, and the tiles are balanced.
+TEST(Unwrap, FillsTilesOfAFewCharts) {
+    Mesh sphere = make_sphere(64, 32);
+    sphere.texcoords.clear();
+    UnwrapOptions options;
+    options.size = {512, 512};
+    const double whole = unwrap(sphere, options).stats.used;
+    options.size = {256, 256};
+    options.tiles = 4;
+    const double tiles = unwrap(sphere, options).stats.used;
+    EXPECT_GT(tiles, whole - 0.15);
+    EXPECT_GT(tiles, 0.5);
+}
+
 TEST(Unwrap, StacksEqualParts) {
     // A part without symmetry.
     Mesh part = make_sphere(9, 6);
@@ -786,6 +800,22 @@ TEST(Unwrap, HandlesHardTopology) {
     const Unwrapped thin = unwrap(slivers(1000, 1e-4F), options);
     EXPECT_EQ(broken_promise(thin), "");
     EXPECT_EQ(thin.stats.charts, 1000U);
+}
+
+// A strip of 12,000 slivers, which are longer than wide by a factor of 10,000.
+TEST(Unwrap, JoinsSlivers) {
+    constexpr std::uint32_t count = 6000;
+    Mesh mesh;
+    for (std::uint32_t i = 0; i <= count; ++i)
+        for (const float y : {0.0F, 1.0F})
+            mesh.positions.emplace_back(1e-4F * static_cast<float>(i), y, 0.0F);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        mesh.triangles.emplace_back(2 * i, 2 * i + 2, 2 * i + 3);
+        mesh.triangles.emplace_back(2 * i, 2 * i + 3, 2 * i + 1);
+    }
+    const Unwrapped unwrapped = unwrap(mesh);
+    EXPECT_EQ(unwrapped.stats.charts, 1U);
+    EXPECT_NEAR(unwrapped.stats.stretch, 1.0, 1e-3);
 }
 
 // A surface that covers itself twice is divided, and so is one whose flat image would overlap.
