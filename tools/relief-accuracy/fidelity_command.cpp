@@ -163,7 +163,7 @@ std::vector<std::string> stage_lines(const MeasuredStage& stage, const MeasuredC
         const glm::vec3 from = fidelity_view(view);
         const ViewLoss& one = loss.views[view];
         lines.push_back(
-            row(fmt::format("view {}: {:.2f} {:.2f} {:.2f}", view + 1, from.x, from.y, from.z),
+            row(fmt::format("view {}: {:.2f} {:.2f} {:.2f}", view, from.x, from.y, from.z),
                 one.flip, one.degrees, one.silhouette_pixels));
     }
     lines.push_back(fmt::format("largest angle {:.1f} degrees", loss.normals.max));
@@ -173,7 +173,7 @@ std::vector<std::string> stage_lines(const MeasuredStage& stage, const MeasuredC
 }
 
 Json json_of(const WorstView& worst) {
-    return {{"view", worst.view + 1}, {"value", worst.value}};
+    return {{"view", worst.view}, {"value", worst.value}};
 }
 
 Json json_of(const DistanceStats& stats) {
@@ -195,7 +195,7 @@ Json json_of(const MeasuredStage& stage) {
     for (const std::size_t view : worst_first(loss)) {
         const glm::vec3 from = fidelity_view(view);
         const ViewLoss& one = loss.views[view];
-        views.push_back({{"view", view + 1},
+        views.push_back({{"view", view},
                          {"from", {from.x, from.y, from.z}},
                          {"flip", one.flip},
                          {"degrees", one.degrees},

@@ -23,7 +23,9 @@ namespace {
 
 constexpr double sphere_share = 0.9;  ///< Of the side of the pictures.
 constexpr float middle_gray = 0.18F;  ///< Linear.
-/// Every fourth view measures the noise floor.
+/// White surfaces stay below the largest value of a picture.
+constexpr float studio_intensity = 0.75F;
+/// Every fourth view measures the noise floor, and the difference on black.
 constexpr std::size_t floor_stride = 4;
 
 /// Sine and cosine of 75 degrees.
@@ -78,9 +80,55 @@ Sphere bounding_sphere(const Scene& source) {
     return sphere;
 }
 
+/// The materials of the pictures.
+enum class Materials {
+    as_authored,
+    gray,     ///< Matte, of the default gray. The source has neither materials nor colors.
+    colored,  ///< Matte, with base colors. The source has only vertex colors.
+};
+
+bool is_default(const Material& material) {
+    return material.name == default_material().name && !material.metallic_roughness &&
+           !material.diffuse_texture && material.diffuse == default_material().diffuse;
+}
+
+/// Sources without materials have no gloss, and often no color, that a result could lose.
+Materials materials_for(const Scene& source) {
+    if (!std::all_of(source.materials.begin(), source.materials.end(), is_default))
+        return Materials::as_authored;
+    const bool has_colors =
+        std::any_of(source.instances.begin(), source.instances.end(),
+                    [&](const Instance& one) { return !source.meshes[one.mesh]->colors.empty(); });
+    return has_colors ? Materials::colored : Materials::gray;
+}
+
+/// Keeps normals, opacity and, for Materials::colored, base colors.
+Material matte(const Material& material, Materials materials) {
+    Material result;
+    result.name = material.name;
+    result.interpolation = material.interpolation;
+    result.normal_map = material.normal_map;
+    result.bump_map = material.bump_map;
+    result.tangent_frame = material.tangent_frame;
+    result.opacity_texture = material.opacity_texture;
+    result.alpha_mode = material.alpha_mode;
+    result.opacity = material.opacity;
+    result.alpha_cutoff = material.alpha_cutoff;
+    result.double_sided = material.double_sided;
+    if (materials == Materials::colored) {
+        const auto& model = material.metallic_roughness;
+        result.diffuse = model                  ? model->base_color
+                         : is_default(material) ? glm::vec3(1.0F)
+                                                : material.diffuse;
+    }
+    if (materials == Materials::colored || material.alpha_mode != AlphaMode::opaque)
+        result.diffuse_texture = material.diffuse_texture;
+    return result;
+}
+
 /// Moves and scales a scene so that the sphere is the unit sphere around the origin, and removes
 /// all that is not a surface.
-Scene normalized(Scene scene, const Sphere& sphere) {
+Scene normalized(Scene scene, const Sphere& sphere, Materials materials) {
     const double scale = 1.0 / sphere.radius;
     glm::dmat4 unit_from_world(1.0);
     for (int axis = 0; axis < 3; ++axis) {
@@ -102,6 +150,10 @@ Scene normalized(Scene scene, const Sphere& sphere) {
     surfaces.images = std::move(scene.images);
     surfaces.instances = std::move(scene.instances);
     name_default_material(surfaces);
+    if (materials != Materials::as_authored) {
+        for (Material& material : surfaces.materials)
+            material = matte(material, materials);
+    }
     return surfaces;
 }
 
@@ -135,6 +187,7 @@ Scene lit(Scene scene, FidelityLight light) {
     switch (light) {
         case FidelityLight::studio:
             scene.environment = studio_environment();
+            scene.environment->intensity = studio_intensity;
             break;
         case FidelityLight::grazing:
             scene.directional_lights = {grazing_light(0)};
@@ -222,8 +275,6 @@ class DrawnScene {
         normals_.emplace(cache, context, scene, plan_effects(scene, settings), settings,
                          IgnoredReport());
     }
-
-    [[nodiscard]] double reach() const { return reach_; }
 
     ColorPicture draw(FidelityLight light, std::size_t view) {
         Renderer& renderer = *lights_[static_cast<std::size_t>(light)];
@@ -369,7 +420,7 @@ void raise(WorstView& worst, std::size_t view, double value) {
     if (value > worst.value) worst = {view, value};
 }
 
-/// The values of all views, and their means by view.
+/// The values of all views.
 struct Collected {
     std::vector<float> values;
 
@@ -380,16 +431,20 @@ struct Collected {
     }
 };
 
+bool is_covered_completely(float coverage) {
+    return coverage > 1.0F - 1e-3F;
+}
+
 struct AngleValues {
     std::vector<float> degrees;
     std::size_t undefined = 0;
 };
 
 AngleValues angles_between(const NormalPicture& a, const NormalPicture& b) {
-    constexpr float whole = 1.0F - 1e-3F;
     AngleValues values;
     for (std::size_t i = 0; i < a.normals.size(); ++i) {
-        if (!(a.coverage[i] > whole && b.coverage[i] > whole)) continue;
+        if (!is_covered_completely(a.coverage[i]) || !is_covered_completely(b.coverage[i]))
+            continue;
         const double degrees =
             a.normals[i] == b.normals[i] && a.normals[i] != glm::vec3(0.0F)
                 ? 0.0
@@ -474,7 +529,7 @@ glm::vec3 fidelity_view(std::size_t view) {
         glm::vec3(0, 1, phi),  glm::vec3(phi, 0, 1),  glm::vec3(1, phi, 0),
         glm::vec3(0, -1, phi), glm::vec3(phi, 0, -1), glm::vec3(1, -phi, 0)};
     const glm::vec3 direction = glm::normalize(half.at(view / 2));
-    return view % 2 == 0 ? direction : -direction;
+    return view % 2 == 0 ? direction : glm::vec3(0.0F) - direction;
 }
 
 double Fidelity::max_picture_mean() const {
@@ -508,6 +563,7 @@ struct FidelityMeter::Implementation {
     const Context& context;
     RenderCache cache;
     Sphere sphere;
+    Materials materials = Materials::as_authored;
     std::vector<ViewPictures> source;
     Floors floors;
 };
@@ -519,7 +575,14 @@ FidelityMeter::Implementation::Implementation(const Context& gl, const Scene& sc
     while (per_side * per_side < options.samples)
         ++per_side;
     sphere = bounding_sphere(scene);
-    const Scene unit = normalized(scene, sphere);
+    materials = materials_for(scene);
+    if (materials != Materials::as_authored) {
+        report.add("source without materials", "model", 0,
+                   materials == Materials::gray
+                       ? "models are drawn matte and gray, with the normal maps of results"
+                       : "models are drawn matte, with colors and the normal maps of results");
+    }
+    const Scene unit = normalized(scene, sphere, materials);
     {
         DrawnScene drawn(cache, context, unit, options.size, per_side, report);
         for (std::size_t view = 0; view < options.views; ++view)
@@ -598,21 +661,39 @@ FidelityMeter::~FidelityMeter() = default;
 
 namespace {
 
-/// Adds the findings on a whole comparison.
-void add_findings(const Fidelity& fidelity, double reach, Report& report) {
+/// Returns whether a model reaches the edge of a picture.
+bool reaches_edge(const NormalPicture& picture, int size) {
+    const auto is_covered = [&](int x, int y) {
+        return picture.coverage[static_cast<std::size_t>(y * size + x)] > 0.0F;
+    };
+    for (int i = 0; i < size; ++i) {
+        if (is_covered(i, 0) || is_covered(i, size - 1) || is_covered(0, i) ||
+            is_covered(size - 1, i))
+            return true;
+    }
+    return false;
+}
+
+/// Adds the findings on a view.
+/// \param on_black  the mean FLIP in the studio on black, if it was measured
+void add_findings(const NormalPicture& source, const NormalPicture& result, int size,
+                  const ViewLoss& loss, const std::optional<double>& on_black,
+                  std::size_t compared_normals, std::size_t view, Report& report) {
     constexpr double max_share = 0.1;
-    const double on_gray = fidelity.pictures[0].mean;
-    if (std::abs(on_gray - fidelity.studio_mean_on_black) > max_share * on_gray) {
-        report.add("difference of pictures that depends on the background", "picture", 0,
-                   "silhouettes contribute much of it");
+    const double on_gray = loss.flip[static_cast<std::size_t>(FidelityLight::studio)];
+    if (on_black && std::abs(on_gray - *on_black) > max_share * on_gray) {
+        report.add("difference of pictures that depends on the background", "view", view,
+                   "silhouettes contribute much of the difference");
     }
-    if (reach > 1.0 / sphere_share) {
-        report.add("surface beyond the edge of the pictures", "picture", 0,
-                   "the part beyond is not compared");
+    if (reaches_edge(result, size)) {
+        report.add("result that reaches the edge of the picture", "view", view,
+                   "what is beyond the edge is not compared");
     }
-    if (fidelity.normals.pixels == 0) {
-        report.add("pictures without a pixel that both models cover", "picture", 0,
-                   "the angle between normals is 0");
+    const bool has_normals =
+        std::any_of(source.coverage.begin(), source.coverage.end(), is_covered_completely);
+    if (has_normals && compared_normals == 0) {
+        report.add("picture without a pixel that both models cover", "view", view,
+                   "no angle between normals is measured");
     }
 }
 
@@ -623,8 +704,8 @@ Fidelity FidelityMeter::measure(const Scene& result, Report& report) {
     const FidelityOptions& options = self.options;
     std::optional<DrawnScene> drawn;
     if (has_triangles(result)) {
-        drawn.emplace(self.cache, self.context, normalized(result, self.sphere), options.size,
-                      self.per_side, report);
+        drawn.emplace(self.cache, self.context, normalized(result, self.sphere, self.materials),
+                      options.size, self.per_side, report);
     }
     Fidelity fidelity;
     std::array<Collected, fidelity_light_count> flip;
@@ -639,7 +720,10 @@ Fidelity FidelityMeter::measure(const Scene& result, Report& report) {
             loss.flip[i] = flip[i].add(self.compare_light(
                 pictures, view, static_cast<FidelityLight>(i), compared, &fidelity.pictures[i]));
         }
-        on_black.add(self.flip_on_black(pictures, view, compared));
+        std::optional<double> view_on_black;
+        if (view % floor_stride == 0) {
+            view_on_black = on_black.add(self.flip_on_black(pictures, view, compared));
+        }
         const AngleValues angles = angles_between(before, pictures.normals);
         fidelity.normals.undefined += angles.undefined;
         loss.degrees = degrees.add(angles.degrees);
@@ -649,6 +733,8 @@ Fidelity FidelityMeter::measure(const Scene& result, Report& report) {
         silhouettes.length += sums.length;
         loss.silhouette_pixels = sums.width();
         raise(fidelity.silhouettes.worst, view, loss.silhouette_pixels);
+        add_findings(before, pictures.normals, options.size, loss, view_on_black,
+                     angles.degrees.size() + angles.undefined, view, report);
     }
     for (std::size_t i = 0; i < fidelity_light_count; ++i) {
         PictureLoss& loss = fidelity.pictures[i];
@@ -668,7 +754,6 @@ Fidelity FidelityMeter::measure(const Scene& result, Report& report) {
     fidelity.silhouettes.floor = self.floors.silhouette_pixels;
     fidelity.diameter = 2.0 * self.sphere.radius;
     fidelity.pixels_across = sphere_share * static_cast<double>(options.size);
-    add_findings(fidelity, drawn ? drawn->reach() : 0.0, report);
     drawn.reset();
     self.cache.drop_unused();
     return fidelity;

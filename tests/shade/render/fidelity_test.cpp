@@ -194,7 +194,7 @@ TEST_F(FidelityTest, OfEqualScenesIsPerfect) {
     EXPECT_EQ(fidelity.max_picture_mean(), 0.0);
     EXPECT_EQ(fidelity.views.size(), small_pictures.views);
     for (const Finding& finding : report.findings())
-        EXPECT_NE(finding.element, "picture") << finding.kind;
+        EXPECT_NE(finding.element, "view") << finding.kind;
     EXPECT_NEAR(fidelity.diameter, 2.0, 1e-6);
     EXPECT_NEAR(fidelity.pixels_across, 57.6, 1e-9);
 }
@@ -205,6 +205,157 @@ TEST_F(FidelityTest, IsReducedByPlantedFaults) {
         const auto [value, floor] = fault.figure(meter.measure(fault.make()));
         EXPECT_GT(value, 3.0 * floor) << fault.name;
         RecordProperty(fault.name, std::to_string(value) + " floor " + std::to_string(floor));
+    }
+}
+
+/// The figures of two measurements are the same bits.
+void expect_equal(const Fidelity& a, const Fidelity& b) {
+    for (std::size_t i = 0; i < fidelity_light_count; ++i) {
+        EXPECT_EQ(a.pictures[i].mean, b.pictures[i].mean);
+        EXPECT_EQ(a.pictures[i].p95, b.pictures[i].p95);
+        EXPECT_EQ(a.pictures[i].floor, b.pictures[i].floor);
+        EXPECT_TRUE(test::same_bits(a.pictures[i].difference, b.pictures[i].difference));
+    }
+    EXPECT_EQ(a.normals.mean, b.normals.mean);
+    EXPECT_EQ(a.normals.max, b.normals.max);
+    EXPECT_EQ(a.silhouettes.width, b.silhouettes.width);
+}
+
+/// A sphere without maps.
+Scene plain_sphere(Mesh mesh = test::sphere(16, 8)) {
+    return test::scene_of(std::move(mesh), Material());
+}
+
+constexpr FidelityOptions tiny_pictures{.size = 32, .samples = 4, .views = 2};
+
+TEST_F(FidelityTest, DependsNeitherOnTheOrderOfTrianglesNorOnThreads) {
+    const Scene coarse = plain_sphere(test::sphere(8, 6));
+    FidelityMeter meter(context(), plain_sphere(), tiny_pictures);
+    const Fidelity expected = meter.measure(coarse);
+    EXPECT_GT(expected.normals.mean, 3.0 * expected.normals.floor);
+    EXPECT_GT(expected.silhouettes.width, expected.silhouettes.floor);
+    Mesh reversed = test::sphere(8, 6);
+    std::reverse(reversed.triangles.begin(), reversed.triangles.end());
+    expect_equal(meter.measure(plain_sphere(reversed)), expected);
+    set_thread_limit(1);
+    expect_equal(meter.measure(coarse), expected);
+    set_thread_limit(0);
+}
+
+TEST_F(FidelityTest, DoesNotDependOnTheUnit) {
+    const auto scaled = [](Mesh mesh, float scale) {
+        for (glm::vec3& position : mesh.positions)
+            position *= scale;
+        return plain_sphere(std::move(mesh));
+    };
+    std::vector<Fidelity> measured;
+    for (const float scale : {1.0F, std::ldexp(1.0F, -20), std::ldexp(1.0F, 20)}) {
+        FidelityMeter meter(context(), scaled(test::sphere(16, 8), scale), tiny_pictures);
+        measured.push_back(meter.measure(scaled(test::sphere(8, 6), scale)));
+        EXPECT_NEAR(measured.back().diameter / static_cast<double>(scale), 2.0, 1e-5);
+    }
+    expect_equal(measured[1], measured[0]);
+    expect_equal(measured[2], measured[0]);
+}
+
+TEST_F(FidelityTest, CountsAMissingResult) {
+    FidelityMeter meter(context(), plain_sphere(), tiny_pictures);
+    for (const Scene& nothing : {Scene(), plain_sphere(Mesh())}) {
+        Report report;
+        const Fidelity fidelity = meter.measure(nothing, report);
+        // The area of a disc is half of its radius times its circumference.
+        EXPECT_NEAR(fidelity.silhouettes.width, fidelity.pixels_across / 4.0, 1.0);
+        EXPECT_GT(fidelity.pictures[studio].mean, 0.1);
+        EXPECT_EQ(fidelity.normals.pixels, 0U);
+        EXPECT_EQ(report.count("picture without a pixel that both models cover"),
+                  tiny_pictures.views);
+    }
+}
+
+TEST_F(FidelityTest, ComparesScenesOfSeveralPartsAndMeshesWithoutNormals) {
+    Scene parts = plain_sphere();
+    parts.instances[0].world_from_object[3] = glm::vec4(-1.5F, 0.0F, 0.0F, 1.0F);
+    parts.instances.push_back(parts.instances[0]);
+    parts.instances[1].world_from_object[3] = glm::vec4(1.5F, 0.0F, 0.0F, 1.0F);
+    Scene joined = plain_sphere(world_surface(parts));
+    ASSERT_EQ(joined.meshes[0]->triangles.size(), 2 * parts.meshes[0]->triangles.size());
+    FidelityMeter meter(context(), parts, tiny_pictures);
+    const Fidelity fidelity = meter.measure(joined);
+    // Rounded positions may move a sample across an edge. Normals are computed for the joined mesh.
+    EXPECT_LT(fidelity.silhouettes.width, 0.01);
+    EXPECT_LT(fidelity.normals.mean, 20.0);
+    Scene half = parts;
+    half.instances.pop_back();
+    EXPECT_GT(meter.measure(half).silhouettes.width, 1.0);
+}
+
+TEST_F(FidelityTest, DrawsSourcesWithoutMaterialsMatte) {
+    Material shiny;
+    shiny.metallic_roughness.emplace();
+    const Scene source = plain_sphere(test::sphere(16, 8));
+    Scene plain = source;
+    plain.materials[0] = default_material();
+    Scene metal = source;
+    metal.materials[0] = shiny;
+    {
+        Report report;
+        FidelityMeter meter(context(), plain, tiny_pictures, report);
+        EXPECT_EQ(report.count("source without materials"), 1U);
+        EXPECT_EQ(meter.measure(metal).max_picture_mean(), 0.0);
+    }
+    Report report;
+    FidelityMeter meter(context(), metal, tiny_pictures, report);
+    EXPECT_EQ(report.count("source without materials"), 0U);
+    EXPECT_GT(meter.measure(plain).max_picture_mean(), 0.05);
+}
+
+TEST_F(FidelityTest, ReportsResultsThatReachTheEdge) {
+    FidelityMeter meter(context(), plain_sphere(), tiny_pictures);
+    Scene large = plain_sphere();
+    large.instances[0].world_from_object = glm::mat4(2.0F);
+    large.instances[0].world_from_object[3] = glm::vec4(0.0F, 0.0F, 0.0F, 1.0F);
+    Report report;
+    const Fidelity fidelity = meter.measure(large, report);
+    EXPECT_EQ(report.count("result that reaches the edge of the picture"), tiny_pictures.views);
+    EXPECT_GT(fidelity.silhouettes.width, 1.0);
+}
+
+TEST_F(FidelityTest, RefusesSourcesAndOptionsOutOfRange) {
+    EXPECT_THROW(FidelityMeter(context(), Scene(), tiny_pictures), InvalidInput);
+    EXPECT_THROW(FidelityMeter(context(), plain_sphere(test::mesh_from({{1, 1, 1}}, {{0, 0, 0}}))),
+                 InvalidInput);
+    for (const FidelityOptions& wrong : {FidelityOptions{.size = 8}, FidelityOptions{.samples = 2},
+                                         FidelityOptions{.views = 0}, FidelityOptions{.views = 13}})
+        EXPECT_THROW(FidelityMeter(context(), plain_sphere(), wrong), InvalidInput);
+}
+
+TEST(FidelityMargin, IsTheRadiusOfTheFilters) {
+    constexpr int size = 2 * fidelity_margin + 5;
+    constexpr int middle = size / 2;
+    Image one = make_image(size, size, 3, 32, ColorSpace::linear);
+    const std::span<float> samples = one.as<float>();
+    std::fill(samples.begin(), samples.end(), 0.2F);
+    const Image before = one;
+    // Blue, whose filter is the widest.
+    samples[static_cast<std::size_t>(3 * (middle * size + middle) + 2)] = 1.0F;
+    const Image map = flip_difference(before, one).map;
+    const std::span<const float> row =
+        map.as<float>().subspan(static_cast<std::size_t>(middle * size));
+    EXPECT_GT(row[middle + fidelity_margin], 0.0F);
+    EXPECT_EQ(row[middle + fidelity_margin + 1], 0.0F);
+}
+
+TEST(FidelityViews, AreOppositePairsOfUnitVectors) {
+    for (std::size_t view = 0; view < fidelity_view_count; ++view) {
+        const glm::vec3 from = fidelity_view(view);
+        EXPECT_NEAR(glm::length(from), 1.0F, 1e-6F);
+        EXPECT_EQ(from, -fidelity_view(view ^ 1U));
+        // The angle between neighbors of an icosahedron.
+        float nearest = -1.0F;
+        for (std::size_t other = 0; other < fidelity_view_count; ++other) {
+            if (other != view) nearest = std::max(nearest, glm::dot(from, fidelity_view(other)));
+        }
+        EXPECT_NEAR(nearest, std::sqrt(0.2F), 1e-5F);
     }
 }
 

@@ -25,7 +25,7 @@ namespace shade {
 /// The light of a picture. The lights, the environment and the background of the scenes are
 /// ignored.
 enum class FidelityLight {
-    studio,      ///< studio_environment().
+    studio,      ///< studio_environment() at an intensity of 0.75, so that white stays below 1.
     grazing,     ///< A directional light from the upper left, 75 degrees from the view axis, with
                  ///< which it turns; white surfaces that face it have radiance 1.
     base_color,  ///< No light: base color, or the diffuse color of Phong's model.
@@ -112,8 +112,9 @@ struct Fidelity {
     NormalLoss normals;
     SilhouetteLoss silhouettes;
     std::vector<ViewLoss> views;
-    /// The mean FLIP in the studio on black instead of middle gray. If they differ by more than
-    /// 10 %, silhouettes dominate, and the report has a finding.
+    /// The mean FLIP in the studio on black instead of middle gray, in the views 0, 4 and 8. Views
+    /// in which they differ by more than 10 %, because silhouettes dominate, are counted as a
+    /// finding.
     double studio_mean_on_black = 0.0;
     double diameter = 0.0;       ///< Of the source's bounding sphere, in world units.
     double pixels_across = 0.0;  ///< The same in pixels: 90 % of the side of the pictures.
@@ -128,11 +129,15 @@ struct Fidelity {
 /// bounding sphere (around the middle of its box) fills 90 % of the side of the pictures. Models of
 /// any size are scaled to that sphere, with their attenuation distances, so that a common factor of
 /// both models changes nothing. Equal scenes have no difference.
+///
+/// If the source has no material (only default_material(), as files without materials do), both
+/// models are drawn matte: gray, or with vertex colors and base colors if the source has vertex
+/// colors. Of a result's materials, only these colors, normal maps and opacity then count.
 class FidelityMeter {
   public:
     /// Draws the source.
     /// \param context  must outlive the meter
-    /// \param report  as Renderer's
+    /// \param report  as Renderer's; and a source without materials
     /// \throws InvalidInput if the source has no triangle or no extent, or an option is out of
     ///         range; and as Renderer does
     FidelityMeter(const Context& context, const Scene& source, const FidelityOptions& options = {},
@@ -144,8 +149,8 @@ class FidelityMeter {
     /// Draws a model and compares it.
     ///
     /// \param result  in the world space of the source; without triangles, it covers no pixel
-    /// \param report  as Renderer's; and if silhouettes dominate, if the result extends beyond the
-    ///         pictures, and if no pixel can be compared
+    /// \param report  as Renderer's; and the views in which silhouettes dominate, in which the
+    ///         result reaches the edge of the picture, and in which the models share no pixel
     /// \throws as Renderer does
     Fidelity measure(const Scene& result, Report& report = IgnoredReport());
 
