@@ -251,6 +251,34 @@ NormalPicture averaged_normals(const Image& drawn, int per_side) {
     return picture;
 }
 
+/// Returns the color of all surfaces if they have the same one.
+std::optional<glm::vec3> only_color(const Scene& scene) {
+    const auto has_colors = [&](const Instance& one) {
+        return !scene.meshes[one.mesh]->colors.empty();
+    };
+    if (scene.materials.empty() ||
+        std::any_of(scene.instances.begin(), scene.instances.end(), has_colors))
+        return std::nullopt;
+    const glm::vec3 color = scene.materials.front().diffuse;
+    const bool is_same =
+        std::all_of(scene.materials.begin(), scene.materials.end(), [&](const Material& one) {
+            return !one.metallic_roughness && !one.diffuse_texture && one.diffuse == color &&
+                   one.alpha_mode == AlphaMode::opaque;
+        });
+    return is_same ? std::optional(glm::min(color, 1.0F)) : std::nullopt;
+}
+
+/// Returns the picture of surfaces of one color without light.
+ColorPicture one_color_picture(const glm::vec3& color, const NormalPicture& covered) {
+    constexpr float largest = 65535.0F;
+    ColorPicture picture(covered.coverage.size());
+    for (std::size_t i = 0; i < picture.size(); ++i) {
+        const float coverage = std::min(covered.coverage[i], 1.0F);
+        picture[i] = glm::u16vec4(glm::vec4(color * coverage, coverage) * largest + 0.5F);
+    }
+    return picture;
+}
+
 /// A scene on the GPU, with a renderer for each light and for normals.
 class DrawnScene {
   public:
@@ -259,6 +287,7 @@ class DrawnScene {
                int per_side, Report& report)
         : reach_(std::clamp(radius_around(scene, glm::dvec3(0.0)), 1.0, max_reach)),
           per_side_(per_side),
+          color_(only_color(scene)),
           grazing_(lit(scene, FidelityLight::grazing)) {
         FrameSettings settings{.width = size * per_side,
                                .height = size * per_side,
@@ -266,6 +295,7 @@ class DrawnScene {
                                .output = OutputCoding::clamped};
         for (std::size_t i = 0; i < fidelity_light_count; ++i) {
             const auto light = static_cast<FidelityLight>(i);
+            if (light == FidelityLight::base_color && color_) continue;
             const Scene with_light = lit(scene, light);
             lights_[i].emplace(cache, context, with_light, plan_effects(with_light, settings),
                                settings, i == 0 ? report : IgnoredReport());
@@ -285,6 +315,9 @@ class DrawnScene {
         return averaged_colors(renderer.draw(camera_of(view, reach_)).image, per_side_);
     }
 
+    /// The color of all surfaces if they have the same one. Their base color needs no drawing.
+    [[nodiscard]] const std::optional<glm::vec3>& color() const { return color_; }
+
     NormalPicture draw_normals(std::size_t view) {
         return averaged_normals(normals_->draw(camera_of(view, reach_)).image, per_side_);
     }
@@ -295,6 +328,7 @@ class DrawnScene {
 
     double reach_;
     int per_side_;
+    std::optional<glm::vec3> color_;
     Scene grazing_;
     std::array<std::optional<Renderer>, fidelity_light_count> lights_;
     std::optional<Renderer> normals_;
@@ -308,9 +342,13 @@ struct ViewPictures {
 
 ViewPictures drawn_view(DrawnScene& scene, std::size_t view) {
     ViewPictures pictures;
-    for (std::size_t i = 0; i < fidelity_light_count; ++i)
-        pictures.colors[i] = scene.draw(static_cast<FidelityLight>(i), view);
     pictures.normals = scene.draw_normals(view);
+    for (std::size_t i = 0; i < fidelity_light_count; ++i) {
+        const auto light = static_cast<FidelityLight>(i);
+        pictures.colors[i] = light == FidelityLight::base_color && scene.color()
+                                 ? one_color_picture(*scene.color(), pictures.normals)
+                                 : scene.draw(light, view);
+    }
     return pictures;
 }
 
