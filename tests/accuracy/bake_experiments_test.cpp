@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bakes of the sphere with bumps: the ground truth of the experiments against the formula of the
-// surface, and the results of the experiments.
+// surface.
 #include "experiment_parts.h"
 
 #include <gtest/gtest.h>
@@ -9,10 +9,8 @@
 #include <numbers>
 
 #include "error_tables/bumpy_reference.h"
-#include "experiment_checks.h"
 #include "relief/mesh/map_convention.h"
 #include "relief/mesh/normals.h"
-#include "relief/mesh/statistics.h"
 #include "support/labels.h"
 
 namespace relief {
@@ -115,34 +113,6 @@ TEST(BakeTruth, ManyRaysConvergeToTheFormula) {
     EXPECT_NEAR(found.errors.front().rms, between, 0.1 * between);
     // A map with negated x is detected.
     EXPECT_GT(rms_of(many, all, &test::TexelReference::mesh, -1.0), 20.0);
-}
-
-/// The experiments, run once per process.
-const std::vector<Experiment>& quick_experiments() {
-    static const std::vector<Experiment> all = test::run_quick(Subject::bake);
-    return all;
-}
-
-TEST_LABELS(not_sanitized);
-TEST(BakeExperiments, HavePicturesOfErrorsAndMaps) {
-    const std::vector<Experiment>& all = quick_experiments();
-    for (const Experiment& one : all) {
-        ASSERT_EQ(one.heat_maps.size(), 3U) << one.id;
-        for (const HeatMap& map : one.heat_maps) {
-            EXPECT_EQ(map.errors.width, 128);
-            EXPECT_EQ(map.errors.height, 128);
-            const double rms = test::measurement_of(one, map.method).error.rms;
-            const std::span<const float> errors = map.errors.as<float>();
-            EXPECT_NEAR(error_stats({errors.begin(), errors.end()}).rms, rms, 1e-4 * rms)
-                << map.method;
-        }
-    }
-    ASSERT_EQ(all.front().pictures.size(), 2U);
-    for (const PicturePair& pair : all.front().pictures) {
-        const double off = picture_error(to_linear(pair.after), pair.before).figures.rms;
-        EXPECT_LT(off, 0.15) << pair.before_label;
-        EXPECT_GT(off, 0.01) << "outlines differ: " << pair.before_label;
-    }
 }
 
 }  // namespace

@@ -7,13 +7,18 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <span>
+#include <vector>
 
 #include "experiment_checks.h"
+#include "experiment_parts.h"
 #include "figure_table.h"
+#include "relief/mesh/statistics.h"
 #include "support/labels.h"
 
 namespace relief::test {
 using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
 
 namespace {
 
@@ -74,6 +79,27 @@ bool is_equal(double a, double b) {
     return (std::isnan(a) && std::isnan(b)) || std::abs(a - b) <= 5e-5 * std::abs(b) + 1e-7;
 }
 
+/// Expects the heat maps and the pictures of bakes to show the measured errors.
+void expect_pictures_of_errors(const std::vector<Experiment>& all) {
+    for (const Experiment& one : all) {
+        ASSERT_EQ(one.heat_maps.size(), 3U) << one.id;
+        for (const HeatMap& map : one.heat_maps) {
+            EXPECT_EQ(map.errors.width, 128);
+            EXPECT_EQ(map.errors.height, 128);
+            const double rms = measurement_of(one, map.method).error.rms;
+            const std::span<const float> errors = map.errors.as<float>();
+            EXPECT_NEAR(error_stats({errors.begin(), errors.end()}).rms, rms, 1e-4 * rms)
+                << map.method;
+        }
+    }
+    ASSERT_EQ(all.front().pictures.size(), 2U);
+    for (const PicturePair& pair : all.front().pictures) {
+        const double off = picture_error(to_linear(pair.after), pair.before).figures.rms;
+        EXPECT_LT(off, 0.15) << pair.before_label;
+        EXPECT_GT(off, 0.01) << "outlines differ: " << pair.before_label;
+    }
+}
+
 class ExperimentsOf : public testing::TestWithParam<Subject> {};
 
 TEST_P(ExperimentsOf, HaveTheStoredFigures) {
@@ -109,6 +135,7 @@ TEST_P(ExperimentsOf, HaveTheStoredFigures) {
         ADD_FAILURE() << "if the changes are right, replace tests/accuracy/" << FigureTable::name
                       << " by " << file;
     }
+    if (GetParam() == Subject::bake) expect_pictures_of_errors(all);
     // Only textbook code has undefined results.
     for (Experiment& experiment : all) {
         std::erase_if(experiment.measurements,

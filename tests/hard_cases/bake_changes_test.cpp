@@ -20,6 +20,7 @@
 #include "relief/mesh/mesh.h"
 #include "support/hard_meshes.h"
 #include "support/invariants.h"
+#include "support/sanitized.h"
 
 namespace relief::test {
 namespace {
@@ -186,6 +187,7 @@ TEST_P(BakeChanges, OfTheHighMeshLeaveTheMapAlone) {
     for (const BakePair& pair : bake_pairs()) {
         for (int repetition = 0; repetition < 3; ++repetition) {
             Dice dice(++seed);
+            if (is_sanitized && repetition > 0) continue;
             EXPECT_EQ(changed_bake_difference(pair, GetParam(), false, dice), "")
                 << pair.name << ", seed " << seed;
         }
@@ -197,6 +199,7 @@ TEST_P(BakeChanges, OfTheLowMeshLeaveTheMapAlone) {
     for (const BakePair& pair : bake_pairs()) {
         for (int repetition = 0; repetition < 3; ++repetition) {
             Dice dice(++seed);
+            if (is_sanitized && repetition > 0) continue;
             EXPECT_EQ(changed_bake_difference(pair, GetParam(), true, dice), "")
                 << pair.name << ", seed " << seed;
         }
@@ -217,7 +220,8 @@ TEST_P(BakeChanges, OfTheLowMeshChangeAutomaticDistancesByAtMostATwentieth) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Metamorphic, BakeChanges, testing::ValuesIn(mesh_changes), name_of_change);
+INSTANTIATE_TEST_SUITE_P(Metamorphic, BakeChanges, testing::ValuesIn(tested_changes),
+                         name_of_change);
 
 }  // namespace
 }  // namespace relief::test

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <map>
 #include <numbers>
+#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/topology.h"
 #include "support/labels.h"
+#include "support/sanitized.h"
 
 namespace relief::test {
 namespace {
@@ -127,6 +129,7 @@ void expect_same_decimation(const MeshChange& change, bool with_distance, std::s
     std::uint32_t seed = 0;
     for (const NamedMesh& named : metamorphic_meshes()) {
         Dice dice(++seed);
+        if (is_sanitized && seed % 3 != 0) continue;
         Mesh mesh = named.mesh;
         if (!dice.one_in(4)) mesh.tangents.clear();
         std::size_t i = dice.below(static_cast<std::uint32_t>(step));
@@ -148,6 +151,9 @@ constexpr MeshChange changes_of_decimation[] = {
     {"RotatedCorners", rotate_corners},      {"CollapsedTriangles", add_collapsed},
     {"PowersOfTwo", scale_by_power_of_two},  {"AllAtOnce", change_all}};
 
+constexpr std::span<const MeshChange> tested_changes_of_decimation =
+    is_sanitized ? std::span(changes_of_decimation).last(1) : std::span(changes_of_decimation);
+
 class DecimationChanges : public testing::TestWithParam<MeshChange> {};
 
 TEST_P(DecimationChanges, LeaveTheResultAlone) {
@@ -161,8 +167,8 @@ TEST_P(DecimationMeshSweep, LeavesTheResultAlone) {
     expect_same_decimation(GetParam(), true, 13);
 }
 
-INSTANTIATE_TEST_SUITE_P(Metamorphic, DecimationChanges, testing::ValuesIn(changes_of_decimation),
-                         name_of_change);
+INSTANTIATE_TEST_SUITE_P(Metamorphic, DecimationChanges,
+                         testing::ValuesIn(tested_changes_of_decimation), name_of_change);
 INSTANTIATE_TEST_SUITE_P(Metamorphic, DecimationMeshSweep, testing::ValuesIn(changes_of_decimation),
                          name_of_change);
 

@@ -48,9 +48,10 @@ std::string way_back(const std::string& summary) {
 
 TEST(HeightsCommand, PrintsTheInverseCommand) {
     const Workplace workplace;
+    workplace.write_bricks("bricks.png");
     EXPECT_EQ(workplace
-                  .run("relief-bake bump data/bricks-height.png out/map.png --strength 20 --kernel "
-                       "sobel3 --quiet")
+                  .run("relief-bake bump bricks.png out/map.png --strength 20 --kernel sobel3 "
+                       "--wrap repeat --quiet")
                   .exit_code,
               0);
     for (const char* options :

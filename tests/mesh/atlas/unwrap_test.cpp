@@ -395,6 +395,7 @@ TEST(Unwrap, KeepsPaddingAndBlocks) {
 }
 
 // The padding around convex charts is known exactly, so that no packing can use more texels.
+TEST_LABELS(not_sanitized);
 TEST(Unwrap, StatesTheCostOfThePadding) {
     const Unwrapped plane = unwrap(test::flat_grid(20));
     const double side = std::sqrt(plane.stats.used) * 2048.0;
@@ -708,7 +709,7 @@ TEST(Unwrap, RefusesOptionsOutOfRange) {
 
 TEST(Unwrap, HasAResultForEveryMesh) {
     std::vector<test::NamedMesh> meshes = test::hard_meshes();
-    for (std::uint32_t seed = 0; seed < (test::is_sanitized ? 20 : 60); ++seed) {
+    for (std::uint32_t seed = 0; seed < (test::is_sanitized ? 8 : 60); ++seed) {
         meshes.push_back({"random " + std::to_string(seed), test::random_mesh(seed)});
         meshes.push_back({"hostile " + std::to_string(seed), test::hostile_mesh(seed)});
     }
@@ -844,13 +845,17 @@ TEST_P(UnwrapChanges, ChangeNoCoordinate) {
     UnwrapOptions options;
     options.size = {256, 256};
     options.padding = 1;
+    // The changes have the same meshes, so that cases of one process unwrap each mesh only once.
+    static std::map<std::uint32_t, Unwrapped> unwrapped_meshes;
     Dice dice(47);
-    for (std::uint32_t seed = 0; seed < 25; ++seed) {
+    for (std::uint32_t seed = 0; seed < (test::is_sanitized ? 12 : 25); ++seed) {
         const Mesh mesh = test::random_mesh(seed);
         MeshVariant variant(mesh);
         GetParam().apply(variant, dice);
         options.flattening = seed % 2 == 0 ? Flattening::arap : Flattening::conformal;
-        const Unwrapped before = unwrap(mesh, options);
+        const auto [place, is_new] = unwrapped_meshes.try_emplace(seed);
+        if (is_new) place->second = unwrap(mesh, options);
+        const Unwrapped& before = place->second;
         const Unwrapped after = unwrap(variant.mesh, options);
         for (std::size_t corner = 0; corner < variant.original.size(); ++corner) {
             const std::uint32_t original = variant.original[corner];
@@ -862,7 +867,7 @@ TEST_P(UnwrapChanges, ChangeNoCoordinate) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Unwrap, UnwrapChanges, testing::ValuesIn(test::mesh_changes),
+INSTANTIATE_TEST_SUITE_P(Unwrap, UnwrapChanges, testing::ValuesIn(test::tested_changes),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST(Unwrap, DoesNotDependOnThreads) {

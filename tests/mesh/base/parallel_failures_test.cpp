@@ -41,6 +41,7 @@
 #include "relief/mesh/tangents.h"
 #include "support/images.h"
 #include "support/invariants.h"
+#include "support/sanitized.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
 
@@ -320,13 +321,7 @@ class ParallelFailures : public testing::TestWithParam<Operation> {};
 /// The numbers of the pieces that fail: the first ones, and others in uniform steps up to the last
 /// one. The runs under sanitizers take fewer, because one is 10 to 50 times as slow there.
 std::set<std::size_t> sampled_pieces(std::size_t count) {
-#if defined(__SANITIZE_THREAD__)
-    constexpr std::size_t max_pieces = 3;
-#elif defined(__SANITIZE_ADDRESS__)
-    constexpr std::size_t max_pieces = 4;
-#else
-    constexpr std::size_t max_pieces = 12;
-#endif
+    constexpr std::size_t max_pieces = test::is_sanitized ? 3 : 8;
     std::set<std::size_t> pieces;
     for (std::size_t i = 0; i < max_pieces; ++i)
         pieces.insert(i < max_pieces / 2 ? i : i * (count - 1) / (max_pieces - 1));

@@ -263,6 +263,7 @@ void expect_promise_kept(const BumpField& map, const std::string& name, double w
     expect_range_holds(choice, error, name, widest);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(KernelChoiceOnNoisyMaps, HasNoCliffAtAnySlope) {
     for (const double slope : {0.05, 2.0}) {
         expect_promise_kept(noisy_map(sines(slope), NoiseKind::white, 0.6, 16),
@@ -270,7 +271,7 @@ TEST(KernelChoiceOnNoisyMaps, HasNoCliffAtAnySlope) {
     }
 }
 
-constexpr double all_ratios[] = {0.1, 0.3, 0.5, 0.6, 1.0, 1.5, 2.0};
+constexpr double all_ratios[] = {0.1, 0.3, 0.6, 1.0, 2.0};
 
 class KernelChoiceAtAllRatios : public testing::TestWithParam<NoiseKind> {};
 
