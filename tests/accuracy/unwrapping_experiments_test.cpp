@@ -91,6 +91,7 @@ TEST(StretchErrors, AreThoseOfScaledRectangles) {
     EXPECT_EQ(flat.undefined, 5'000U);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(UnwrappingExperiments, ShowThatUnwrappingStretchesLessThanTheSidesOfACube) {
     const Experiment smooth = run_one("unwrapping/smooth-stretch");
     const double given = measurement_of(smooth, "existing charts").error.rms;

@@ -15,6 +15,7 @@
 
 #include "common/file_jobs.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 #include "tools/file_jobs_words.h"
 #include "tools/workplace.h"
@@ -247,6 +248,7 @@ TEST(ProcessBatch, RefusesAFileAsFolder) {
     EXPECT_EQ(workplace.read("out/taken"), "old");
 }
 
+TEST_LABELS(not_sanitized);
 TEST(ProcessBatch, RealModelsComeOutTheSameForAnyNumberOfThreads) {
     RELIEF_NEEDS_SHARED(models, "data/models/gltf");
     constexpr std::array models_named = {"WaterBottle", "Corset", "BoomBox"};

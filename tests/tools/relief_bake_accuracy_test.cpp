@@ -169,6 +169,7 @@ TEST_F(BakeAccuracy, ComparesEverySampleCountAndDepth) {
     EXPECT_EQ(report["samples"], 32 * 32);
 }
 
+TEST_LABELS(not_sanitized);
 TEST_F(BakeAccuracy, Uses256SamplesIfFewerAreNotEnough) {
     const json few = baked("--max-error 10 --samples 64 --bits 16");
     const double bound = 0.6 * few["selected"]["p99"].get<double>();

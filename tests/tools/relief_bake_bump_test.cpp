@@ -11,6 +11,7 @@
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 #include "tools/workplace.h"
 
@@ -569,6 +570,7 @@ TEST(BumpAccuracyCommand, ALimitIncludesTheErrorOfTheMap) {
                 0.4);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(BumpAccuracyCommand, ALimitWithinTheRangeOfTheExpectedErrorIsAFinding) {
     const Workplace workplace;
     workplace.write_bricks("bricks.png");

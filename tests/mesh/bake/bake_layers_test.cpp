@@ -18,6 +18,7 @@
 #include "relief/mesh/report.h"
 #include "support/invariants.h"
 #include "support/labels.h"
+#include "support/sanitized.h"
 
 namespace relief {
 using namespace relief::detail;
@@ -52,6 +53,7 @@ TEST(BakeLayers, HaveNoSayInEachOther) {
     const Mesh low = make_torus();
     for (const auto& [samples, angle] :
          {std::pair<int, std::optional<double>>(1, {}), {16, {}}, {16, 0.02}}) {
+        if (test::is_sanitized && !angle) continue;
         // Clang 14 captures structured bindings only by name.
         const auto with = [&, samples = samples, angle = angle](BakeOptions options) {
             options.map.samples = samples;

@@ -200,6 +200,7 @@ TEST(MapConvention, CurvesAreRecognised) {
     EXPECT_EQ(found.convention.curve, StoredCurve::srgb_encoded);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(MapConvention, RecognizesFlippedImages) {
     Image turned = tangent_normals();
     const auto from = tangent_normals().as<float>();
@@ -220,6 +221,7 @@ Mesh low_by(TangentMethod mode) {
     return with_frames(pair().low, {.tangents = mode}, report).mesh;
 }
 
+TEST_LABELS(not_sanitized);
 TEST(MapConvention, BasesOfTangentsAreRecognised) {
     const auto basis_of = [](TangentMethod mode) {
         const ConventionFit found = fit(encoded(baked(pair().high, low_by(mode), options_of())));
@@ -271,6 +273,7 @@ Image baked_by(const std::function<glm::dmat3(glm::dvec3 n, glm::dvec4 t, glm::d
     return result;
 }
 
+TEST_LABELS(not_sanitized);
 TEST(MapConvention, FramesOfOtherShadersAreRecognised) {
     const ConventionFit unit = fit(encoded(baked_by([](glm::dvec3 n, glm::dvec4 t, glm::dvec3) {
         const glm::dvec3 unit_n = glm::normalize(n), unit_t = glm::normalize(glm::dvec3(t));

@@ -260,6 +260,7 @@ TEST(KernelChoice, StatesTheFractionOfOutliers) {
     EXPECT_THAT(choice.reason, HasSubstr("isolated outliers (0.39% of the texels)"));
 }
 
+TEST_LABELS(not_sanitized);
 TEST(KernelChoice, ExpectsTheErrorThatThereIs) {
     // If rounding and noise are white, the prediction is accurate within one half.
     for (const char* name : {"smooth, 16 bit", "detailed, 8 bit", "steep, 8 bit",
@@ -275,6 +276,7 @@ TEST(KernelChoice, ExpectsTheErrorThatThereIs) {
     }
 }
 
+TEST_LABELS(not_sanitized);
 TEST(KernelChoice, ExpectsTheErrorOfNoiseOnMapsOfAnyWidth) {
     const FieldRecipe recipe{"", FieldShape::waves, 32.0, 0.3, FieldCoding::bits8, 1.0, 5};
     for (const int width : {128, 144, 160, 191, 192, 200, 256, 257}) {

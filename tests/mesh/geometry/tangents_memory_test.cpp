@@ -156,6 +156,7 @@ TEST(BufferMemory, AWorkspaceServesTheNextCall) {
     EXPECT_LT(peak_of(compute), first / 10);
 }
 
+TEST_LABELS(not_sanitized);
 TEST(TangentMemory, IsAtMostHalfAsMuchAgainAsInputAndOutput) {
     Mesh welded = test::grid(320);
     // A single duplicate vertex makes triangles over welded vertices necessary.

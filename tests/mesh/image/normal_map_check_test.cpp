@@ -80,6 +80,7 @@ TEST(NormalMapCheck, SoundMapHasNoFindings) {
     EXPECT_FALSE(check.has_problem());
 }
 
+TEST_LABELS(not_sanitized);
 TEST(NormalMapCheck, DetectsGreenDespiteNoiseBitsAndStrength) {
     int told = 0;
     for (const double slope : {0.003, 0.01, 0.1, 0.5, 2.0}) {
@@ -365,6 +366,7 @@ TEST(FlatEvidence, CountsTexelsNearFlatAndThoseOfTheLowerCode) {
     EXPECT_TRUE(flat_evidence(wide).is_half());
 }
 
+TEST_LABELS(not_sanitized);
 TEST(FlatEvidence, ASmoothSurfaceRaisesNoAlarm) {
     for (const double steepness : {0.05, 0.2, 0.5, 1.0, 3.0}) {
         for (const double shift : {-0.3, -0.01, -0.004, 0.0, 0.003, 0.1}) {

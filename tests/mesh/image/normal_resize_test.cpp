@@ -15,6 +15,7 @@
 #include "relief/mesh/report.h"
 #include "support/images.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 
 namespace relief {
 using namespace relief::accuracy;
@@ -118,6 +119,7 @@ double error_at(int side, double shortest, ResizeFilter filter, ResizeDomain dom
         .rms;
 }
 
+TEST_LABELS(not_sanitized);
 TEST(ResizeNormals, IsTrueToTheSameSurfaceAtTheOtherResolution) {
     // Measured, in degrees: box, triangle, cubic, lanczos.
     const std::map<int, std::array<double, 4>> by_slopes = {{24, {0.722, 1.557, 0.197, 0.129}},

@@ -21,6 +21,8 @@
 namespace relief {
 namespace {
 
+FILE_LABELS(not_sanitized);
+
 const std::filesystem::path data = test::source_directory() / "data";
 
 TEST_LABELS(slow);

@@ -11,6 +11,7 @@
 #include "relief/mesh/report.h"
 #include "relief/mesh/topology.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 
 namespace relief {
@@ -129,6 +130,7 @@ TEST(DecimateScene, TexturesOfSomeMeshesStayThere) {
     EXPECT_TRUE(scene.meshes[0].mesh.texcoords.empty());
 }
 
+TEST_LABELS(not_sanitized);
 TEST(DecimateScene, MaxErrorIsALengthOfTheScene) {
     const Mesh torus = bare(make_torus());
     DecimateOptions options;

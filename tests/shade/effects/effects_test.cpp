@@ -369,6 +369,7 @@ TEST(EffectForcing, RefusesFinishingPasses) {
               "scene's");
 }
 
+TEST_LABELS(not_sanitized);
 TEST(ScenesCallingFor, EveryCoveringSetArePlannedWithIt) {
     for (const Features& features : test::covering_features()) {
         const test::CallingScene calling = test::scene_calling_for(features);

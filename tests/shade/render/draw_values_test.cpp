@@ -203,6 +203,7 @@ TEST(PlannedInputs, NameStreamsAndImagesWithTheirReasons) {
     EXPECT_EQ(inputs.textures[0].reason, "material 'm' has it");
 }
 
+TEST_LABELS(not_sanitized);
 TEST(PlannedInputs, AreThoseOfTheProgramForEveryPairOfEffects) {
     for (const Features& features : test::covering_features()) {
         const test::CallingScene calling = test::scene_calling_for(features);

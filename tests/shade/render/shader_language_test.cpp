@@ -136,6 +136,7 @@ std::vector<std::string> missing_parts(const Samples& samples) {
     return missing;
 }
 
+TEST_LABELS(not_sanitized);
 TEST(ShaderLanguage, HasAProgramWithEveryPart) {
     EXPECT_THAT(
         missing_parts(Samples(GlslVersion::core_330)),

@@ -16,6 +16,7 @@
 #include "mesh/io/gltf/gltf_support.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/report.h"
+#include "support/labels.h"
 #include "support/sanitized.h"
 #include "support/shapes.h"
 #include "support/shared_data.h"
@@ -149,6 +150,7 @@ TEST_F(GltfDocumentTest, EveryReadableModelMeansTheSameAfterACopy) {
     EXPECT_LT(repaired, 40);
 }
 
+TEST_LABELS(not_sanitized);
 TEST_F(GltfDocumentTest, AnIndependentReaderFindsTheSamePositions) {
     RELIEF_NEEDS_SHARED(models, "data/models/gltf");
     int compared = 0;

@@ -415,6 +415,7 @@ class GltfRoundTrip : public testing::Test {
     Report report_;
 };
 
+TEST_LABELS(not_sanitized);
 TEST_F(GltfRoundTrip, CopiesHaveEveryPropertyAndEveryValue) {
     RELIEF_NEEDS_SHARED(models, "data/models");
     std::size_t accessors = 0;

@@ -22,6 +22,7 @@
 #include "relief/mesh/limits.h"
 #include "relief/mesh/report.h"
 #include "support/invariants.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -367,6 +368,7 @@ TEST(PlainJpegs, GrayAndColoredReadAsTheModuleReadsThem) {
     }
 }
 
+TEST_LABELS(not_sanitized);
 TEST(PlainJpegs, AmongRealFilesReadAsTheModuleReadsThem) {
     RELIEF_NEEDS_SHARED(data, "data");
     const test::Comparison comparison = test::compare_all(data, ".jpg");
