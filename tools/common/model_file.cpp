@@ -189,7 +189,7 @@ std::vector<std::string> write_model(const std::filesystem::path& file, const Mo
     const auto& contents = std::get<MeshFile>(model);
     if (!is_document(writable_format(file)))
         return write_as_mesh(file, contents, has_tangents, report);
-    GltfDocument::from_mesh(contents, report).write(file);
+    GltfDocument::write_mesh(file, contents, report);
     return {};
 }
 

@@ -280,6 +280,13 @@ class GltfDocument {
     ///                problem; counts converted names, and each kind of repaired value
     static GltfDocument from_mesh(const MeshFile& contents, Report& report);
 
+    /// Writes from_mesh(contents, report), as write() does, but copies no array of a mesh whose
+    /// triangles have one material.
+    ///
+    /// \throws FileError if the file cannot be written; else as from_mesh()
+    static void write_mesh(const std::filesystem::path& file, const MeshFile& contents,
+                           Report& report);
+
     GltfDocument(GltfDocument&&) noexcept;
     GltfDocument& operator=(GltfDocument&&) noexcept;
     ~GltfDocument();

@@ -109,7 +109,7 @@ Vector vector_in(const Json& object, const char* key, Vector absent) {
 /// Bytes of a buffer. They may be the tail of a file that was read as a whole.
 struct GltfBuffer {
     std::string storage;
-    std::string_view borrowed;  ///< In place of `storage`: bytes that another document holds.
+    std::string_view borrowed;  ///< In place of `storage`: bytes of another owner.
     std::size_t begin = 0;
     std::size_t size = 0;
     bool is_placeholder = false;  ///< It has no bytes: all its views are compressed.
@@ -258,6 +258,9 @@ std::size_t append_bytes(GltfContents& contents, std::string_view bytes);
 
 /// Appends bytes as a new buffer view. \return its index
 std::size_t add_view(GltfContents& contents, std::string_view bytes);
+
+/// Adds bytes that outlive the contents as a buffer and a buffer view. \return the view's index
+std::size_t add_borrowed_view(GltfContents& contents, std::string_view bytes);
 
 /// Appends packed elements of `size` bytes as a new buffer view, with the alignment that `target`
 /// requires.

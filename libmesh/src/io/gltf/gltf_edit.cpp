@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "io/gltf/gltf_accessor.h"
+#include "large_memory.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -50,7 +51,9 @@ void widen_bounds(const std::string& elements, std::size_t element_size, std::si
 
 void detail::reserve_bytes(GltfContents& contents, std::size_t count) {
     GltfBuffer& buffer = added_buffer(contents);
-    buffer.storage.reserve(buffer.storage.size() + count);
+    const std::size_t size = buffer.storage.size();
+    buffer.storage.reserve(size + count);
+    expect_filling(buffer.storage.data() + size, count);
 }
 
 std::size_t detail::append_bytes(GltfContents& contents, std::string_view bytes) {
@@ -61,6 +64,17 @@ std::size_t detail::append_bytes(GltfContents& contents, std::string_view bytes)
     buffer.size = buffer.storage.size();
     contents.root["buffers"][contents.added_buffer]["byteLength"] = buffer.size;
     return offset;
+}
+
+std::size_t detail::add_borrowed_view(GltfContents& contents, std::string_view bytes) {
+    const std::size_t index = contents.buffers.size();
+    GltfBuffer& buffer = contents.buffers.emplace_back();
+    buffer.borrowed = bytes;
+    buffer.size = bytes.size();
+    contents.root["buffers"].push_back({{"byteLength", bytes.size()}});
+    Json& views = contents.root["bufferViews"];
+    views.push_back({{"buffer", index}, {"byteOffset", 0}, {"byteLength", bytes.size()}});
+    return views.size() - 1;
 }
 
 std::size_t detail::add_view(GltfContents& contents, std::string_view bytes) {

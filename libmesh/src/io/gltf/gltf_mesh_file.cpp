@@ -28,17 +28,26 @@ using namespace relief::detail;
 
 namespace {
 
+/// The arrays of a document that is made from a mesh.
+enum class Arrays {
+    copied,
+    borrowed,  ///< Where possible: the mesh must outlive the document.
+};
+
 /// Builds the document of one mesh.
 class DocumentBuilder {
   public:
-    DocumentBuilder(const MeshFile& file, Report* report) : file_(file), report_(report) {}
+    DocumentBuilder(const MeshFile& file, Report* report, Arrays arrays)
+        : file_(file), report_(report), arrays_(arrays) {}
     GltfContents build();
 
   private:
     template <typename Element>
-    std::size_t add_accessor(const std::vector<Element>& elements, const char* type,
-                             int component_type, int target);
-    void add_primitive(const MaterialRange& range);
+    std::size_t add_accessor(std::span<const Element> elements, const char* type,
+                             int component_type, int target, Arrays arrays);
+    std::size_t add_indices(const Mesh& mesh, Arrays arrays);
+    void add_primitive(const Mesh& mesh, std::optional<std::uint32_t> material, Arrays arrays);
+    void add_range(const MaterialRange& range);
     void add_material(const MtlMaterial& material, std::size_t index);
     Json texture_info(const std::filesystem::path& image);
     void add_texture(Json& holder, const char* key, const char* texture,
@@ -47,16 +56,19 @@ class DocumentBuilder {
 
     const MeshFile& file_;
     Report* report_;
+    Arrays arrays_;
     GltfContents contents_;
     std::map<std::filesystem::path, std::size_t> textures_;
     bool uses_emissive_strength_ = false;
 };
 
 template <typename Element>
-std::size_t DocumentBuilder::add_accessor(const std::vector<Element>& elements, const char* type,
-                                          int component_type, int target) {
-    const std::size_t view = add_view(contents_, {reinterpret_cast<const char*>(elements.data()),
-                                                  elements.size() * sizeof(Element)});
+std::size_t DocumentBuilder::add_accessor(std::span<const Element> elements, const char* type,
+                                          int component_type, int target, Arrays arrays) {
+    const std::string_view bytes(reinterpret_cast<const char*>(elements.data()),
+                                 elements.size_bytes());
+    const std::size_t view = arrays == Arrays::borrowed ? add_borrowed_view(contents_, bytes)
+                                                        : add_view(contents_, bytes);
     contents_.root["bufferViews"][view]["target"] = target;
     Json& accessors = contents_.root["accessors"];
     accessors.push_back({{"bufferView", view},
@@ -67,81 +79,104 @@ std::size_t DocumentBuilder::add_accessor(const std::vector<Element>& elements, 
     return accessors.size() - 1;
 }
 
-/// The vertices that a range uses, ascending; all vertices if it is the only range.
-std::vector<std::uint32_t> vertices_of(const Mesh& mesh, const MaterialRange& range) {
-    std::vector<bool> is_used(mesh.positions.size(), range.triangle_count == mesh.triangles.size());
-    for (std::uint32_t i = 0; i < range.triangle_count; ++i) {
-        const glm::uvec3& triangle = mesh.triangles[range.first_triangle + i];
-        for (int k = 0; k < 3; ++k)
-            is_used[triangle[k]] = true;
-    }
-    std::vector<std::uint32_t> vertices;
-    for (std::uint32_t i = 0; i < is_used.size(); ++i) {
-        if (is_used[i]) vertices.push_back(i);
-    }
-    return vertices;
+std::size_t DocumentBuilder::add_indices(const Mesh& mesh, Arrays arrays) {
+    static_assert(sizeof(glm::uvec3) == 3 * sizeof(std::uint32_t));
+    const std::span indices(reinterpret_cast<const std::uint32_t*>(mesh.triangles.data()),
+                            3 * mesh.triangles.size());
+    // 65535 restarts strips, so it must not be a vertex.
+    if (mesh.positions.size() > 0xFFFF)
+        return add_accessor(indices, "SCALAR", gltf_code::uint32, gltf_code::element_array_buffer,
+                            arrays);
+    const std::vector<std::uint16_t> narrow(indices.begin(), indices.end());
+    return add_accessor(std::span(narrow), "SCALAR", gltf_code::uint16,
+                        gltf_code::element_array_buffer, Arrays::copied);
 }
 
-template <typename Value>
-std::vector<Value> picked(const std::vector<Value>& values,
-                          const std::vector<std::uint32_t>& vertices) {
-    std::vector<Value> result;
-    result.reserve(vertices.size());
-    for (const std::uint32_t vertex : vertices)
-        result.push_back(values[vertex]);
-    return result;
+/// Returns whether a normal is not unit within glTF's tolerance, although it has a direction.
+bool needs_normalizing(const glm::vec3& normal) {
+    const double length = glm::length(glm::dvec3(normal));
+    return length > 0.0 && std::isfinite(length) && std::abs(length - 1.0) > 5e-4;
 }
 
 /// Normalizes normals for glTF, because OBJ allows any length. Normals that are unit within glTF's
 /// tolerance keep their bits; zero and non-finite ones stay.
-std::vector<glm::vec3> unit_normals(std::vector<glm::vec3> normals) {
-    for (glm::vec3& normal : normals) {
-        const double length = glm::length(glm::dvec3(normal));
-        const bool has_direction = length > 0.0 && std::isfinite(length);
-        if (has_direction && std::abs(length - 1.0) > 5e-4) {
-            normal = glm::vec3(glm::dvec3(normal) / length);
-        }
+void normalize_for_gltf(Mesh& mesh) {
+    for (glm::vec3& normal : mesh.normals) {
+        if (needs_normalizing(normal))
+            normal = glm::vec3(glm::dvec3(normal) / glm::length(glm::dvec3(normal)));
     }
-    return normals;
 }
 
-void DocumentBuilder::add_primitive(const MaterialRange& range) {
-    const Mesh& mesh = file_.mesh;
-    const std::vector<std::uint32_t> vertices = vertices_of(mesh, range);
-    std::vector<std::uint32_t> place(mesh.positions.size(), 0);
-    for (std::uint32_t i = 0; i < vertices.size(); ++i)
-        place[vertices[i]] = i;
-    std::vector<std::uint32_t> indices;
-    for (std::uint32_t i = 0; i < range.triangle_count; ++i) {
-        for (int k = 0; k < 3; ++k) {
-            indices.push_back(place[mesh.triangles[range.first_triangle + i][k]]);
-        }
+/// The triangles of a range as a mesh of their own, with the vertices that they use, ascending.
+Mesh part_of(const Mesh& mesh, const MaterialRange& range) {
+    std::vector<bool> is_used(mesh.positions.size());
+    Mesh part;
+    const auto first = mesh.triangles.begin() + range.first_triangle;
+    part.triangles.assign(first, first + range.triangle_count);
+    for (const glm::uvec3& triangle : part.triangles) {
+        for (int k = 0; k < 3; ++k)
+            is_used[triangle[k]] = true;
     }
+    std::vector<std::uint32_t> place(mesh.positions.size(), 0);
+    std::uint32_t count = 0;
+    for (std::uint32_t i = 0; i < is_used.size(); ++i) {
+        if (!is_used[i]) continue;
+        place[i] = count++;
+        const auto pick = [&](const auto& values, auto& picked) {
+            if (!values.empty()) picked.push_back(values[i]);
+        };
+        pick(mesh.positions, part.positions);
+        pick(mesh.normals, part.normals);
+        pick(mesh.tangents, part.tangents);
+        pick(mesh.texcoords, part.texcoords);
+        pick(mesh.colors, part.colors);
+    }
+    for (glm::uvec3& triangle : part.triangles)
+        triangle = glm::uvec3(place[triangle.x], place[triangle.y], place[triangle.z]);
+    return part;
+}
+
+/// Returns the bytes of a primitive, at most.
+std::size_t size_of(const Mesh& mesh) {
+    const auto bytes = [](const auto& values) { return values.size() * sizeof(values[0]); };
+    return bytes(mesh.positions) + bytes(mesh.normals) + bytes(mesh.tangents) +
+           bytes(mesh.texcoords) + bytes(mesh.colors) + bytes(mesh.triangles);
+}
+
+/// Adds all triangles of a mesh as a primitive.
+void DocumentBuilder::add_primitive(const Mesh& mesh, std::optional<std::uint32_t> material,
+                                    Arrays arrays) {
+    if (arrays == Arrays::copied) reserve_bytes(contents_, size_of(mesh));
     Json attributes;
     const auto add = [&](const char* name, const auto& values, const char* type) {
         if (values.empty()) return;
-        attributes[name] = add_accessor(picked(values, vertices), type, gltf_code::float32,
-                                        gltf_code::array_buffer);
+        attributes[name] = add_accessor(std::span(values), type, gltf_code::float32,
+                                        gltf_code::array_buffer, arrays);
     };
     add("POSITION", mesh.positions, "VEC3");
     set_bounds(contents_.root["accessors"][attributes["POSITION"].get<std::size_t>()],
-               picked(mesh.positions, vertices));
-    add("NORMAL", unit_normals(mesh.normals), "VEC3");
+               mesh.positions);
+    add("NORMAL", mesh.normals, "VEC3");
     if (!mesh.normals.empty()) add("TANGENT", mesh.tangents, "VEC4");
     add("TEXCOORD_0", mesh.texcoords, "VEC2");
     add("COLOR_0", mesh.colors, "VEC4");
     Json primitive = {{"attributes", attributes}};
-    // 65535 restarts strips, so it must not be a vertex.
-    if (vertices.size() <= 0xFFFF) {
-        primitive["indices"] =
-            add_accessor(std::vector<std::uint16_t>(indices.begin(), indices.end()), "SCALAR",
-                         gltf_code::uint16, gltf_code::element_array_buffer);
-    } else {
-        primitive["indices"] =
-            add_accessor(indices, "SCALAR", gltf_code::uint32, gltf_code::element_array_buffer);
-    }
-    if (range.material) primitive["material"] = *range.material;
+    primitive["indices"] = add_indices(mesh, arrays);
+    if (material) primitive["material"] = *material;
     contents_.root["meshes"][0]["primitives"].push_back(primitive);
+}
+
+/// Only what a primitive changes is copied: large meshes are mostly one primitive.
+void DocumentBuilder::add_range(const MaterialRange& range) {
+    const Mesh& mesh = file_.mesh;
+    const bool is_whole = range.triangle_count == mesh.triangles.size();
+    if (is_whole && std::none_of(mesh.normals.begin(), mesh.normals.end(), needs_normalizing)) {
+        add_primitive(mesh, range.material, arrays_);
+        return;
+    }
+    Mesh part = is_whole ? mesh : part_of(mesh, range);
+    normalize_for_gltf(part);
+    add_primitive(part, range.material, Arrays::copied);
 }
 
 /// The texture of an image file. Each file is embedded once.
@@ -258,7 +293,7 @@ GltfContents DocumentBuilder::build() {
         ranges.push_back({0, static_cast<std::uint32_t>(mesh.triangles.size()), std::nullopt});
     }
     for (const MaterialRange& range : ranges) {
-        if (range.triangle_count > 0) add_primitive(range);
+        if (range.triangle_count > 0) add_range(range);
     }
     for (std::size_t i = 0; i < file_.materials.size(); ++i)
         add_material(file_.materials[i], i);
@@ -268,7 +303,7 @@ GltfContents DocumentBuilder::build() {
 }
 
 /// \param report  if null, an unreadable image is a FileError
-GltfContents gltf_from_mesh(const MeshFile& file, Report* report) {
+GltfContents gltf_from_mesh(const MeshFile& file, Report* report, Arrays arrays = Arrays::copied) {
     validate(file.mesh);
     if (file.mesh.triangles.empty()) throw InvalidInput("the mesh has no triangle");
     for (const MaterialRange& range : file.mesh.material_ranges) {
@@ -279,7 +314,7 @@ GltfContents gltf_from_mesh(const MeshFile& file, Report* report) {
                             *range.material, file.materials.size()));
         }
     }
-    GltfContents contents = DocumentBuilder(file, report).build();
+    GltfContents contents = DocumentBuilder(file, report, arrays).build();
     const std::size_t primitives = contents.root["meshes"][0]["primitives"].size();
     for (std::size_t i = 0; report != nullptr && i < primitives; ++i)
         repair_values(contents, {0, i}, *report);
@@ -294,6 +329,13 @@ GltfDocument GltfDocument::from_mesh(const MeshFile& contents) {
 
 GltfDocument GltfDocument::from_mesh(const MeshFile& contents, Report& report) {
     return GltfDocument(std::make_unique<Contents>(Contents{gltf_from_mesh(contents, &report)}));
+}
+
+void GltfDocument::write_mesh(const std::filesystem::path& file, const MeshFile& contents,
+                              Report& report) {
+    GltfDocument(
+        std::make_unique<Contents>(Contents{gltf_from_mesh(contents, &report, Arrays::borrowed)}))
+        .write(file);
 }
 
 namespace {

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY files: read_ply() for ASCII and binary files of both byte orders and all scalar types,
-// write_ply() for binary little-endian ones.
+// Reads PLY files: ASCII and binary ones of both byte orders, and all scalar types. Binary files are
+// read in pieces, and triangles go straight to the mesh. Malformed files throw FileError.
 //
 // relief does not use OpenMesh 9's reader: it hangs on some broken headers, allocates gigabytes for
 // a negative list length, refuses integer positions and unsigned index types other than its own,
 // and leaves out texture coordinates named texture_u or stored per face.
-//
-// The writer keeps the bits of floats, except v: it is flipped in float, because the format has no
-// other convention, and 1 - (1 - v) can differ from v by 6e-8. PLY cannot hold materials. Malformed
-// files throw FileError. Source: [Turk 1994].
+// Source: [Turk 1994].
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,15 +17,16 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "file_replacement.h"
 #include "files.h"
 #include "io/mesh/mesh_formats.h"
 #include "io/mesh/polygon_mesh.h"
+#include "large_memory.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 
@@ -56,7 +54,6 @@ struct PlyHeader {
     PlyFormat format = PlyFormat::ascii;
     std::vector<PlyElement> elements;
     std::size_t data_begin = 0;  ///< Offset of the first byte after the header.
-    std::size_t file_size = 0;
 };
 
 PlyType type_named(std::string_view name, const TextScanner& text) {
@@ -165,9 +162,11 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::filesystem::path& 
     if (!has_format) throw FileError(file, "the header has no format");
     text.skip_line();
     header.data_begin = bytes.size() - text.rest().size();
-    header.file_size = bytes.size();
     return header;
 }
+
+/// Bytes that may follow the last element.
+constexpr std::string_view ply_padding("\0 \t\r\n", 5);
 
 /// Values as text.
 class PlyTextValues {
@@ -184,21 +183,58 @@ class PlyTextValues {
         text_.skip_line();
         return is_whole;
     }
-    /// The data that has not been read.
-    [[nodiscard]] std::string_view rest() const { return text_.rest(); }
+    /// Number of bytes that have not been read.
+    [[nodiscard]] std::uint64_t remaining() const { return text_.rest().size(); }
+    /// Returns whether nothing but white space and zeros follows.
+    bool is_at_end() {
+        return text_.rest().find_first_not_of(ply_padding) == std::string_view::npos;
+    }
     /// Upper bound of the number of remaining values, to validate counts.
     [[nodiscard]] std::uint64_t max_remaining(PlyType) const { return text_.rest().size() / 2 + 1; }
+    /// Text has no triangles that can be copied.
+    static bool next_triangle(PlyType, PlyType, glm::uvec3&) { return false; }
 
   private:
     TextScanner text_;
+};
+
+/// A file that is read from front to back, in pieces that stay in the cache.
+class SequentialBytes {
+  public:
+    SequentialBytes(const RandomAccessFile& file, std::uint64_t begin)
+        : file_(file), unread_(begin), piece_(piece_size) {}
+
+    /// Returns whether `count` bytes follow; then they are at data(). At most a few values.
+    bool has(std::size_t count) { return rest_.size() >= count || read_more(count); }
+    [[nodiscard]] const char* data() const { return rest_.data(); }
+    void skip(std::size_t count) { rest_.remove_prefix(count); }
+    [[nodiscard]] std::uint64_t remaining() const { return rest_.size() + file_.size() - unread_; }
+
+  private:
+    static constexpr std::size_t piece_size = std::size_t{1} << 20;
+
+    bool read_more(std::size_t count) {
+        std::copy(rest_.begin(), rest_.end(), piece_.begin());
+        const auto size = static_cast<std::size_t>(
+            std::min<std::uint64_t>(piece_size - rest_.size(), file_.size() - unread_));
+        file_.read(unread_, std::as_writable_bytes(std::span(piece_).subspan(rest_.size(), size)));
+        unread_ += size;
+        rest_ = {piece_.data(), rest_.size() + size};
+        return rest_.size() >= count;
+    }
+
+    const RandomAccessFile& file_;
+    std::uint64_t unread_;  ///< Offset of the first byte that is not in a piece yet.
+    std::vector<char> piece_;
+    std::string_view rest_;  ///< The part of the piece that has not been taken.
 };
 
 /// Values as bytes, in either order.
 template <bool is_swapped>
 class PlyBinaryValues {
   public:
-    PlyBinaryValues(std::string_view data, const std::filesystem::path& file)
-        : data_(data), file_(file) {}
+    PlyBinaryValues(const RandomAccessFile& file, std::uint64_t begin)
+        : bytes_(file, begin), file_(file.path()) {}
 
     double next(PlyType type) {
         switch (type) {
@@ -222,30 +258,56 @@ class PlyBinaryValues {
         return 0.0;
     }
     bool end_element() { return true; }
-    [[nodiscard]] std::string_view rest() const { return data_; }
+    [[nodiscard]] std::uint64_t remaining() const { return bytes_.remaining(); }
+    bool is_at_end() {
+        while (bytes_.has(1) && ply_padding.find(*bytes_.data()) != std::string_view::npos)
+            bytes_.skip(1);
+        return bytes_.remaining() == 0;
+    }
     [[nodiscard]] std::uint64_t max_remaining(PlyType type) const {
-        return data_.size() / size_of(type);
+        return bytes_.remaining() / size_of(type);
+    }
+    /// Takes a list of three indices, which is most of the data of large files. If the next list is
+    /// none, or of rare types, it stays.
+    bool next_triangle(PlyType count_type, PlyType index_type, glm::uvec3& triangle) {
+        constexpr std::size_t size = 1 + sizeof(triangle);
+        if (size_of(count_type) != 1 || size_of(index_type) != 4 ||
+            index_type == PlyType::float32 || !bytes_.has(size) || *bytes_.data() != 3)
+            return false;
+        std::array<std::uint32_t, 3> corners{};
+        std::memcpy(corners.data(), bytes_.data() + 1, sizeof(corners));
+        for (std::uint32_t& corner : corners) {
+            if constexpr (is_swapped) corner = swapped(corner);
+            // Negative indices are reported as such.
+            if (index_type == PlyType::int32 && corner > 0x7FFFFFFFU) return false;
+        }
+        bytes_.skip(size);
+        triangle = glm::uvec3(corners[0], corners[1], corners[2]);
+        return true;
     }
 
   private:
+    template <typename Bits>
+    static Bits swapped(Bits bits) {
+        Bits result = 0;
+        for (std::size_t i = 0; i < sizeof(Bits); ++i) {
+            result = static_cast<Bits>(result << 8U) | static_cast<Bits>(bits & 0xFFU);
+            bits = static_cast<Bits>(bits >> 8U);
+        }
+        return result;
+    }
+
     template <typename Value, typename Bits>
     Value take() {
-        if (data_.size() < sizeof(Bits)) throw FileError(file_, "ends in the middle of its data");
+        if (!bytes_.has(sizeof(Bits))) throw FileError(file_, "ends in the middle of its data");
         Bits bits = 0;
-        std::memcpy(&bits, data_.data(), sizeof(Bits));
-        data_.remove_prefix(sizeof(Bits));
-        if constexpr (is_swapped && sizeof(Bits) > 1) {
-            Bits swapped = 0;
-            for (std::size_t i = 0; i < sizeof(Bits); ++i) {
-                swapped = static_cast<Bits>(swapped << 8U) | static_cast<Bits>(bits & 0xFFU);
-                bits = static_cast<Bits>(bits >> 8U);
-            }
-            bits = swapped;
-        }
+        std::memcpy(&bits, bytes_.data(), sizeof(Bits));
+        bytes_.skip(sizeof(Bits));
+        if constexpr (is_swapped && sizeof(Bits) > 1) bits = swapped(bits);
         return std::bit_cast<Value>(bits);
     }
 
-    std::string_view data_;
+    SequentialBytes bytes_;
     const std::filesystem::path& file_;
 };
 
@@ -315,8 +377,8 @@ bool is_corner_list(const PlyProperty& property) {
 }
 
 struct PlyData {
-    Mesh mesh;
-    Polygons polygons;
+    Mesh mesh;          ///< Its triangles are set if all faces are triangles of one element.
+    Polygons polygons;  ///< Otherwise all faces.
     /// One per corner if texture coordinates are stored per face; otherwise empty.
     std::vector<glm::vec2> corner_texcoords;
 };
@@ -325,9 +387,13 @@ struct PlyData {
 template <typename Values>
 class PlyElements {
   public:
-    PlyElements(Values values, const std::filesystem::path& file, const glm::dvec3& origin,
+    PlyElements(Values values, const RandomAccessFile& file, const glm::dvec3& origin,
                 Report& report)
-        : values_(values), file_(file), origin_(origin), report_(report) {}
+        : values_(std::move(values)),
+          file_(file.path()),
+          file_size_(file.size()),
+          origin_(origin),
+          report_(report) {}
 
     PlyData read(const PlyHeader& header) {
         for (const PlyElement& element : header.elements) {
@@ -343,11 +409,9 @@ class PlyElements {
                 skip(element);
             }
         }
-        constexpr std::string_view padding("\0 \t\r\n", 5);
-        if (values_.rest().find_first_not_of(padding) != std::string_view::npos) {
-            report_.add("data behind the last element", "byte",
-                        header.file_size - values_.rest().size(), "left out");
-        }
+        const std::uint64_t end = file_size_ - values_.remaining();
+        if (!values_.is_at_end())
+            report_.add("data behind the last element", "byte", end, "left out");
         return std::move(data_);
     }
 
@@ -408,14 +472,27 @@ class PlyElements {
         data_.polygons.corners.push_back(static_cast<std::uint32_t>(index));
     }
 
+    /// Reserves memory for as many elements as the file can hold.
+    template <typename Value>
+    void reserve(std::vector<Value>& values, const PlyElement& element) const {
+        std::uint64_t most = element.count;
+        for (const PlyProperty& property : element.properties)
+            most =
+                std::min(most, values_.max_remaining(property.count_type.value_or(property.type)));
+        reserve_to_fill(values, most);
+    }
+
     void read_vertices(const PlyElement& element);
+    std::uint64_t read_triangles(const PlyElement& element);
     void read_faces(const PlyElement& element);
+    void use_polygons();
     void read_strips(const PlyElement& element);
     void read_corners(const PlyProperty& property);
     void read_corner_texcoords(const PlyProperty& property);
 
     Values values_;
     const std::filesystem::path& file_;
+    std::uint64_t file_size_;
     glm::dvec3 origin_;
     Report& report_;
     PlyData data_;
@@ -436,6 +513,13 @@ void PlyElements<Values>::read_vertices(const PlyElement& element) {
     }
     if (!has[x] || !has[y] || !has[z]) throw FileError(file_, "its vertices have no x, y and z");
     Mesh& mesh = data_.mesh;
+    const bool has_normals = has[nx] && has[ny] && has[nz];
+    const bool has_colors = has[red] && has[green] && has[blue];
+    const bool has_texcoords = has[u] && has[v];
+    reserve(mesh.positions, element);
+    if (has_normals) reserve(mesh.normals, element);
+    if (has_colors) reserve(mesh.colors, element);
+    if (has_texcoords) reserve(mesh.texcoords, element);
     std::array<double, slot_count + 2> row{};
     row[alpha] = 1.0;
     ProgressStage stage("vertices", element.count);
@@ -452,11 +536,9 @@ void PlyElements<Values>::read_vertices(const PlyElement& element) {
         }
         end_element(element, i);
         mesh.positions.emplace_back(glm::dvec3(row[x], row[y], row[z]) - origin_);
-        if (has[nx] && has[ny] && has[nz]) mesh.normals.emplace_back(row[nx], row[ny], row[nz]);
-        if (has[red] && has[green] && has[blue]) {
-            mesh.colors.emplace_back(row[red], row[green], row[blue], row[alpha]);
-        }
-        if (has[u] && has[v]) mesh.texcoords.emplace_back(row[u], 1.0 - row[v]);
+        if (has_normals) mesh.normals.emplace_back(row[nx], row[ny], row[nz]);
+        if (has_colors) mesh.colors.emplace_back(row[red], row[green], row[blue], row[alpha]);
+        if (has_texcoords) mesh.texcoords.emplace_back(row[u], 1.0 - row[v]);
     }
 }
 
@@ -488,6 +570,25 @@ void PlyElements<Values>::read_corner_texcoords(const PlyProperty& property) {
     texcoords.resize(data_.polygons.corners.size());
 }
 
+/// Reads faces up to the first that is not a triangle, if they have nothing but corners.
+/// \return their number
+template <typename Values>
+std::uint64_t PlyElements<Values>::read_triangles(const PlyElement& element) {
+    const PlyProperty& corners = element.properties.front();
+    std::vector<glm::uvec3>& triangles = data_.mesh.triangles;
+    if (element.properties.size() != 1 || !triangles.empty() || !data_.polygons.corners.empty())
+        return 0;
+    reserve(triangles, element);
+    glm::uvec3 triangle;
+    ProgressStage stage("faces", element.count);
+    while (triangles.size() < element.count &&
+           values_.next_triangle(*corners.count_type, corners.type, triangle)) {
+        stage.at(triangles.size());
+        triangles.push_back(triangle);
+    }
+    return triangles.size();
+}
+
 template <typename Values>
 void PlyElements<Values>::read_faces(const PlyElement& element) {
     const auto corners =
@@ -501,8 +602,11 @@ void PlyElements<Values>::read_faces(const PlyElement& element) {
     for (const PlyProperty& property : element.properties) {
         if (&property != &*corners && !is_texcoords(property)) count_unread(element, property);
     }
+    const std::uint64_t read = read_triangles(element);
+    if (read == element.count) return;
+    use_polygons();
     ProgressStage stage("faces", element.count);
-    for (std::uint64_t i = 0; i < element.count; ++i) {
+    for (std::uint64_t i = read; i < element.count; ++i) {
         stage.at(i);
         for (const PlyProperty& property : element.properties) {
             if (&property == &*corners) {
@@ -517,10 +621,22 @@ void PlyElements<Values>::read_faces(const PlyElement& element) {
     }
 }
 
+/// Moves the triangles to the polygons, which hold faces of any kind.
+template <typename Values>
+void PlyElements<Values>::use_polygons() {
+    std::vector<glm::uvec3>& triangles = data_.mesh.triangles;
+    Polygons& polygons = data_.polygons;
+    polygons.corner_counts.resize(polygons.corner_counts.size() + triangles.size(), 3);
+    for (const glm::uvec3& triangle : triangles)
+        polygons.corners.insert(polygons.corners.end(), {triangle.x, triangle.y, triangle.z});
+    triangles = {};
+}
+
 /// Reads strips of triangles. Every second triangle of a strip is reversed; -1 begins another
 /// strip.
 template <typename Values>
 void PlyElements<Values>::read_strips(const PlyElement& element) {
+    use_polygons();
     ProgressStage stage("strips", element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
         stage.at(i);
@@ -575,16 +691,36 @@ void unify_corners(PlyData& data, const std::filesystem::path& file) {
     data.polygons.corners = unify_vertices(statements, data.mesh);
 }
 
-PlyData read_data(const PlyHeader& header, std::string_view bytes,
-                  const std::filesystem::path& file, const glm::dvec3& origin, Report& report) {
+/// Reads the beginning of a file, at least up to the end of its header.
+std::string read_head(const RandomAccessFile& file) {
+    std::string head;
+    const auto has_end = [&] {
+        const std::size_t end = head.find("\nend_header");
+        return end != std::string::npos && head.find('\n', end + 1) != std::string::npos;
+    };
+    while (head.size() < file.size() && !has_end()) {
+        const std::size_t size = head.size();
+        head.resize(static_cast<std::size_t>(
+            std::min<std::uint64_t>(std::max<std::size_t>(2 * size, 1 << 16), file.size())));
+        file.read(size, std::as_writable_bytes(std::span(head).subspan(size)));
+    }
+    return head;
+}
+
+PlyData read_data(const PlyHeader& header, const RandomAccessFile& file, const glm::dvec3& origin,
+                  Report& report) {
     switch (header.format) {
-        case PlyFormat::ascii:
-            return PlyElements(PlyTextValues(bytes, file), file, origin, report).read(header);
+        case PlyFormat::ascii: {
+            const FileContents contents(file.path());
+            const std::string_view data = contents.text().substr(header.data_begin);
+            return PlyElements(PlyTextValues(data, file.path()), file, origin, report).read(header);
+        }
         case PlyFormat::little_endian:
-            return PlyElements(PlyBinaryValues<false>(bytes, file), file, origin, report)
+            return PlyElements(PlyBinaryValues<false>(file, header.data_begin), file, origin,
+                               report)
                 .read(header);
         default:
-            return PlyElements(PlyBinaryValues<true>(bytes, file), file, origin, report)
+            return PlyElements(PlyBinaryValues<true>(file, header.data_begin), file, origin, report)
                 .read(header);
     }
 }
@@ -593,93 +729,27 @@ PlyData read_data(const PlyHeader& header, std::string_view bytes,
 
 MeshFile read_ply(const std::filesystem::path& file, const glm::dvec3& origin, Report& report) {
     static_assert(std::endian::native == std::endian::little);
-    const FileContents contents(file);
-    const std::string_view bytes = contents.text();
-    const PlyHeader header = parse_ply_header(bytes, file);
-    PlyData data = read_data(header, bytes.substr(header.data_begin), file, origin, report);
+    const RandomAccessFile opened(file);
+    require_memory_for(file, opened.size());
+    const PlyHeader header = parse_ply_header(read_head(opened), file);
+    PlyData data = read_data(header, opened, origin, report);
     if (!data.corner_texcoords.empty()) {
         data.corner_texcoords.resize(data.polygons.corners.size());
         unify_corners(data, file);
     }
     data.mesh.name = file.stem().string();
-    if (data.polygons.corners.empty() && !data.mesh.positions.empty()) {
+    if (data.mesh.triangles.empty() && data.polygons.corners.empty() &&
+        !data.mesh.positions.empty()) {
         throw FileError(file,
                         fmt::format("has no triangle, only {} points", data.mesh.positions.size()));
     }
-    add_triangles(data.mesh, data.polygons, file, report);
+    if (data.mesh.triangles.empty())
+        add_triangles(data.mesh, data.polygons, file, report);
+    else
+        check_faces(data.mesh, file);
     MeshFile result;
     result.mesh = std::move(data.mesh);
     return result;
-}
-
-namespace {
-
-bool are_bytes(const std::vector<glm::vec4>& colors) {
-    const auto is_byte = [](float value) {
-        return value >= 0.0F && value <= 1.0F &&
-               static_cast<float>(std::round(static_cast<double>(value) * 255.0) / 255.0) == value;
-    };
-    return std::all_of(colors.begin(), colors.end(), [&](const glm::vec4& c) {
-        return is_byte(c.r) && is_byte(c.g) && is_byte(c.b) && is_byte(c.a);
-    });
-}
-
-std::string header_text(const Mesh& mesh, bool has_origin, bool has_byte_colors) {
-    std::string text = fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n",
-                                   mesh.positions.size());
-    const auto properties = [&](const char* type, std::initializer_list<const char*> names) {
-        for (const char* name : names)
-            text += fmt::format("property {} {}\n", type, name);
-    };
-    properties(has_origin ? "double" : "float", {"x", "y", "z"});
-    if (!mesh.normals.empty()) properties("float", {"nx", "ny", "nz"});
-    if (!mesh.texcoords.empty()) properties("float", {"s", "t"});
-    if (!mesh.colors.empty()) {
-        properties(has_byte_colors ? "uchar" : "float", {"red", "green", "blue", "alpha"});
-    }
-    const bool fits_int = mesh.positions.size() <= std::numeric_limits<std::int32_t>::max();
-    return text +
-           fmt::format("element face {}\nproperty list uchar {} vertex_indices\nend_header\n",
-                       mesh.triangles.size(), fits_int ? "int" : "uint");
-}
-
-template <typename Value>
-void append(std::string& bytes, const Value& value) {
-    const std::size_t size = bytes.size();
-    bytes.resize(size + sizeof(value));
-    std::memcpy(bytes.data() + size, &value, sizeof(value));
-}
-
-}  // namespace
-
-void write_ply(const std::filesystem::path& file, const MeshFile& contents) {
-    static_assert(std::endian::native == std::endian::little);
-    const Mesh& mesh = contents.mesh;
-    const bool has_byte_colors = are_bytes(mesh.colors);
-    const bool has_origin = contents.origin != glm::dvec3(0.0);
-    std::string bytes = header_text(mesh, has_origin, has_byte_colors);
-    bytes.reserve(bytes.size() + mesh.positions.size() * 48 + mesh.triangles.size() * 13);
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-        if (has_origin)
-            append(bytes, contents.origin + glm::dvec3(mesh.positions[i]));
-        else
-            append(bytes, mesh.positions[i]);
-        if (!mesh.normals.empty()) append(bytes, mesh.normals[i]);
-        if (!mesh.texcoords.empty()) {
-            append(bytes, glm::vec2(mesh.texcoords[i].x, 1.0F - mesh.texcoords[i].y));
-        }
-        if (mesh.colors.empty()) continue;
-        if (has_byte_colors) {
-            append(bytes, glm::u8vec4(glm::round(mesh.colors[i] * 255.0F)));
-        } else {
-            append(bytes, mesh.colors[i]);
-        }
-    }
-    for (const glm::uvec3& triangle : mesh.triangles) {
-        append(bytes, std::uint8_t{3});
-        append(bytes, triangle);
-    }
-    replace_file(file, std::as_bytes(std::span(bytes)));
 }
 
 }  // namespace relief::detail

@@ -372,6 +372,12 @@ PolygonCut triangulate_polygon(std::span<const glm::vec3> positions,
 
 namespace {
 
+[[noreturn]] void fail_at_face(std::size_t face, std::uint32_t vertex, std::size_t vertex_count,
+                               const std::filesystem::path& file) {
+    throw FileError(file, fmt::format("face {} names vertex {}, but there are only {}", face,
+                                      vertex, vertex_count));
+}
+
 void check_indices(const Polygons& polygons, std::size_t vertex_count,
                    const std::filesystem::path& file) {
     std::size_t corner = 0;
@@ -379,8 +385,7 @@ void check_indices(const Polygons& polygons, std::size_t vertex_count,
         check_cancelled(i);
         for (const std::size_t end = corner + polygons.corner_counts[i]; corner < end; ++corner) {
             if (polygons.corners[corner] < vertex_count) continue;
-            throw FileError(file, fmt::format("face {} names vertex {}, but there are only {}", i,
-                                              polygons.corners[corner], vertex_count));
+            fail_at_face(i, polygons.corners[corner], vertex_count, file);
         }
     }
 }
@@ -445,6 +450,17 @@ CutPolygons cut_polygons(const Mesh& vertices, const Polygons& polygons, Report&
         corner += count;
     }
     return result;
+}
+
+void check_faces(const Mesh& mesh, const std::filesystem::path& file) {
+    const std::size_t vertex_count = mesh.positions.size();
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        check_cancelled(i);
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t vertex = mesh.triangles[i][k];
+            if (vertex >= vertex_count) fail_at_face(i, vertex, vertex_count, file);
+        }
+    }
 }
 
 void add_triangles(Mesh& mesh, const Polygons& polygons, const std::filesystem::path& file,

@@ -73,6 +73,9 @@ CutPolygons cut_polygons(const Mesh& vertices, const Polygons& polygons, Report&
 void add_triangles(Mesh& mesh, const Polygons& polygons, const std::filesystem::path& file,
                    Report& report);
 
+/// Checks triangles that are the faces of a file. \throws FileError if one names a missing vertex
+void check_faces(const Mesh& mesh, const std::filesystem::path& file);
+
 /// An open-addressing hash table that numbers keys of N words in order of first use.
 template <std::size_t N>
 class KeyNumbers {

@@ -48,6 +48,31 @@ class GltfFromMesh : public testing::Test {
     Report report_;
 };
 
+TEST_F(GltfFromMesh, WritingAMeshGivesTheBytesOfItsDocument) {
+    MeshFile small{test::sphere(24, 12), {}};
+    MeshFile large{test::sphere(300, 250), {}};
+    ASSERT_GT(large.mesh.positions.size(), 0xFFFFU);
+    MeshFile long_normals = large;
+    long_normals.mesh.normals[7] *= 3.0F;
+    MeshFile not_finite = large;
+    not_finite.mesh.texcoords[5].x = std::numeric_limits<float>::quiet_NaN();
+    MeshFile parts = large;
+    parts.materials.resize(2);
+    const auto triangles = static_cast<std::uint32_t>(large.mesh.triangles.size());
+    parts.mesh.material_ranges = {{0, 1000, 1}, {1000, 0, 0}, {1000, triangles - 1000, 0}};
+    MeshFile one_part = large;
+    one_part.materials.resize(1);
+    one_part.mesh.material_ranges = {{0, triangles, 0}};
+    int number = 0;
+    for (const MeshFile* file : {&small, &large, &long_normals, &not_finite, &parts, &one_part}) {
+        SCOPED_TRACE(number++);
+        Report of_document;
+        GltfDocument::from_mesh(*file, of_document).write(folder_ / "document.glb");
+        GltfDocument::write_mesh(folder_ / "mesh.glb", *file, report_);
+        EXPECT_TRUE(read_file(folder_ / "mesh.glb") == read_file(folder_ / "document.glb"));
+    }
+}
+
 TEST_F(GltfFromMesh, AMeshComesBackBitForBit) {
     MeshFile file{test::sphere(24, 12), {}};
     file.mesh.name = "ball";

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // PLY, STL and OFF files: all variants, broken files, and the triangulation of polygons.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -126,6 +130,81 @@ TEST_F(Ply, MalformedHeadersAreRefusedByLine) {
     EXPECT_THAT(error_of("ply\nelement vertex 1\n"), HasSubstr("no end_header"));
     EXPECT_THAT(error_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty list float int a\n"),
                 HasSubstr("counted in a floating-point type"));
+}
+
+/// A binary file whose faces are triangles, except that one may be a quad.
+std::string strip_of_triangles(std::uint32_t count, std::uint32_t quad, bool is_big_endian,
+                               const std::string& header_lines = "") {
+    std::string bytes = fmt::format(
+        "ply\nformat binary_{}_endian 1.0\n{}element vertex {}\nproperty float x\nproperty float "
+        "y\nproperty float z\nelement face {}\nproperty list uchar uint vertex_indices\n"
+        "end_header\n",
+        is_big_endian ? "big" : "little", header_lines, count + 3, count);
+    const auto add = [&](const auto value) {
+        auto raw = std::bit_cast<std::array<char, sizeof(value)>>(value);
+        if (is_big_endian) std::reverse(raw.begin(), raw.end());
+        bytes.append(raw.begin(), raw.end());
+    };
+    for (std::uint32_t i = 0; i < count + 3; ++i) {
+        for (const std::uint32_t value : {i, i % 2, i % 3})
+            add(static_cast<float>(value));
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint8_t corners = i == quad ? 4 : 3;
+        add(corners);
+        for (std::uint32_t k = 0; k < corners; ++k)
+            add(i + k);
+    }
+    return bytes;
+}
+
+TEST_F(Ply, LargeFilesAreReadInPiecesOfAnySize) {
+    constexpr std::uint32_t count = 100'003;  // 2.5 MB; no value ends with a piece.
+    constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+    for (const bool is_big_endian : {false, true}) {
+        for (const std::uint32_t quad : {none, 0U, 70'000U, count - 1}) {
+            SCOPED_TRACE(fmt::format("big endian {}, quad {}", is_big_endian, quad));
+            const Mesh mesh = read(strip_of_triangles(count, quad, is_big_endian)).mesh;
+            ASSERT_EQ(mesh.positions.size(), count + 3);
+            ASSERT_EQ(mesh.triangles.size(), count + (quad == none ? 0 : 1));
+            for (std::uint32_t i = 0; i < count + 3; ++i)
+                ASSERT_EQ(mesh.positions[i], glm::vec3(i, i % 2, i % 3));
+            std::size_t next = 0;
+            for (std::uint32_t i = 0; i < count; ++i) {
+                const glm::uvec3 last = mesh.triangles[next + (i == quad ? 1 : 0)];
+                if (i == quad) {
+                    ASSERT_EQ(last[2], i + 3);
+                } else {
+                    ASSERT_EQ(last, glm::uvec3(i, i + 1, i + 2));
+                }
+                next += i == quad ? 2 : 1;
+            }
+        }
+    }
+    EXPECT_TRUE(report_.empty());
+}
+
+TEST_F(Ply, LongHeadersAreReadToTheirEnd) {
+    std::string comments = "comment end_header is not here\n";
+    for (int i = 0; i < 3000; ++i)
+        comments += "comment a line that makes the header longer than the first piece\n";
+    EXPECT_EQ(read(strip_of_triangles(5, 9, false, comments)).mesh.triangles.size(), 5U);
+}
+
+TEST_F(Ply, TrianglesOfMissingVerticesAreNamedWithTheFace) {
+    std::string bytes = strip_of_triangles(3, 9, false);
+    const auto set_last_index = [&](const std::uint32_t index) {
+        std::memcpy(bytes.data() + bytes.size() - 4, &index, 4);
+    };
+    set_last_index(6);
+    EXPECT_THAT(error_of(bytes), HasSubstr("face 2 names vertex 6, but there are only 6"));
+    set_last_index(0xFFFFFFFF);
+    EXPECT_THAT(error_of(bytes), HasSubstr("face 2 names vertex 4294967295"));
+    const std::size_t type = bytes.find("uchar uint");
+    bytes.replace(type, 10, "uchar int ");
+    EXPECT_THAT(error_of(bytes), HasSubstr("face 2 names vertex -1"));
+    bytes.resize(bytes.size() - 2);
+    EXPECT_THAT(error_of(bytes), HasSubstr("ends in the middle of its data"));
 }
 
 TEST_F(Ply, RoundTrips) {
