@@ -254,8 +254,27 @@ std::string without_pictures_of_levels(const std::string& command) {
                                                                     : command;
 }
 
+/// The command with a map of 128 texels, if it bakes one of 512 or, by default, 1024. Neither exit
+/// codes nor messages depend on the size, except those of a search for the number of samples.
+std::string with_small_map(const std::string& command) {
+    const auto has = [&](const char* text) { return command.find(text) != std::string::npos; };
+    if (!has("relief-bake mesh ") || has("--samples auto") || has("--max-error")) return command;
+    if (!has(" --size ")) return command + " --size 128";
+    return std::regex_replace(command, std::regex(" --size 512\\b"), " --size 128");
+}
+
+TEST(ShownCommands, BakeSmallMapsUnlessTheySearchForSamples) {
+    EXPECT_EQ(with_small_map("relief-bake mesh a b c.png"),
+              "relief-bake mesh a b c.png --size 128");
+    EXPECT_EQ(with_small_map("relief-bake mesh a b c --size 512 --half"),
+              "relief-bake mesh a b c --size 128 --half");
+    for (const char* line : {"relief-bake mesh a b c --size 64", "relief-bake bump a b",
+                             "relief-bake mesh a b c --size 512 --samples auto"})
+        EXPECT_EQ(with_small_map(line), line);
+}
+
 ProgramResult run_fast(const std::string& command, const Workplace& workplace) {
-    return workplace.run(without_pictures_of_levels(with_few_rounds(command)));
+    return workplace.run(with_small_map(without_pictures_of_levels(with_few_rounds(command))));
 }
 
 /// Runs a command. If it repeats a measurement of this process with another output folder, the
