@@ -27,7 +27,6 @@ class FidelityTest : public test::DrawTest {};
 constexpr FidelityOptions small_pictures{.size = 64, .samples = 4, .views = 6};
 constexpr int map_size = 64;
 constexpr auto studio = static_cast<std::size_t>(FidelityLight::studio);
-constexpr auto grazing = static_cast<std::size_t>(FidelityLight::grazing);
 constexpr auto base_color = static_cast<std::size_t>(FidelityLight::base_color);
 
 /// A normal map of waves along both axes.
@@ -307,6 +306,17 @@ TEST_F(FidelityTest, DrawsSourcesWithoutMaterialsMatte) {
     FidelityMeter meter(context(), metal, tiny_pictures, report);
     EXPECT_EQ(report.count("source without materials"), 0U);
     EXPECT_GT(meter.measure(plain).max_picture_mean(), 0.05);
+}
+
+TEST_F(FidelityTest, DerivesTheSamePictureOfOneColorThatIsDrawn) {
+    const Scene derived = plain_sphere();
+    Scene drawn = derived;
+    drawn.materials[0].alpha_mode = AlphaMode::mask;
+    FidelityMeter meter(context(), derived, tiny_pictures);
+    const Fidelity fidelity = meter.measure(drawn);
+    // Colors of 16 bits may differ by rounding.
+    EXPECT_LT(fidelity.pictures[base_color].mean, 1e-3);
+    EXPECT_EQ(fidelity.silhouettes.width, 0.0);
 }
 
 TEST_F(FidelityTest, ReportsResultsThatReachTheEdge) {
