@@ -38,6 +38,7 @@ constexpr std::array commands = {
     WritingCommand{"relief-mesh process '{0}' {1} --normals keep"},
     WritingCommand{"relief-mesh decimate '{0}' {1} --ratio 50%"},
     WritingCommand{"relief-mesh subdivide '{0}' {1} --levels 1"},
+    WritingCommand{"relief-mesh repair '{0}' {1}"},
     WritingCommand{"relief-mesh material '{0}' {1} --normal data/scenes/bricks-normal.png"},
     WritingCommand{"relief-mesh lods '{0}' {1} --levels 1 --switch distance"},
     WritingCommand{

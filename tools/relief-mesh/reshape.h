@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// For the commands that change triangles: measured distances of meshes, and pictures that compare
-/// levels of detail with the input at the sizes at which they may take over. OpenGL is loaded by
-/// the constructor of LevelPictures, so other commands do not pay for it.
+/// For the commands that change triangles: their files and summaries, measured distances of meshes,
+/// and pictures that compare levels of detail with the input at the sizes at which they may take
+/// over. OpenGL is loaded by the constructor of LevelPictures, so other commands do not pay for it.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,51 @@
 #include <string>
 #include <vector>
 
+#include "common/file_jobs.h"
+#include "common/model_file.h"
+#include "common/options.h"
 #include "common/summary.h"
 #include "relief/mesh/gltf_document.h"
+#include "relief/mesh/model.h"
 #include "relief/mesh/topology.h"
 
 namespace relief::tools {
+
+/// How the distance between IN and OUT is measured: not at all, at random samples, or at all
+/// vertices and inside the triangles.
+enum class Measuring { none, quick, full };
+
+inline const Choices<Measuring> measuring_words = {
+    {"quick", Measuring::quick}, {"full", Measuring::full}, {"none", Measuring::none}};
+
+/// The options that all commands have which change triangles.
+struct ReshapeRequest {
+    FileWords words;
+    std::optional<ModelFormat> format;  ///< Of files in an output folder.
+    NormalMode normals = NormalMode::keep;
+    std::optional<Measuring> measuring;  ///< --measure
+    ReportOptions report;
+    GeneralOptions general;
+};
+
+/// Adds the files, --normals, --report, --strict, --threads and --quiet.
+/// \param about_normals  empty: the command has no --normals
+void add_reshape_options(CLI::App& app, ReshapeRequest& request, const std::string& about_normals);
+
+/// Returns how distances are measured: by default at random samples, and not at all if nothing is
+/// reported.
+Measuring measuring_of(const ReshapeRequest& request);
+
+/// Runs a command: reads, changes and writes the models, and reports.
+///
+/// \param options  the command's options for the report
+/// \param max_triangles  --triangles
+/// \param with_conditions  counts the conditions of `relief-mesh check` before and after
+/// \throws UsageError, FileError; then no file is written
+ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const ModelChange& change,
+                 Measuring measuring, const Json& options,
+                 std::optional<std::size_t> max_triangles = std::nullopt,
+                 bool with_conditions = false);
 
 /// Returns the positions and triangles.
 Mesh without_attributes(const Mesh& mesh);

@@ -9,12 +9,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "commands.h"
@@ -23,6 +25,7 @@
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/summary.h"
+#include "relief/mesh/diagnose.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/model.h"
 #include "relief/mesh/topology.h"
@@ -109,27 +112,26 @@ Json distance_json(const DistanceStats& stats) {
 
 namespace {
 
-/// How the distance between IN and OUT is measured: not at all, at random samples, or at all
-/// vertices and inside the triangles.
-enum class Measuring { none, quick, full };
+/// The numbers of a condition in all meshes, before and after.
+using ConditionCounts = std::map<MeshCondition, std::pair<std::size_t, std::size_t>>;
 
-const Choices<Measuring> measuring_words = {
-    {"quick", Measuring::quick}, {"full", Measuring::full}, {"none", Measuring::none}};
-
-struct ReshapeRequest {
-    FileWords words;
-    std::optional<ModelFormat> format;  ///< Of files in an output folder.
-    NormalMode normals = NormalMode::keep;
-    std::optional<Measuring> measuring;  ///< --measure
-    ReportOptions report;
-    GeneralOptions general;
-};
+void add_conditions(const Mesh& mesh, std::size_t std::pair<std::size_t, std::size_t>::*side,
+                    ConditionCounts& counts) {
+    DiagnoseOptions options;
+    options.texture_overlap = false;
+    options.listed = 0;
+    for (const MeshConditionCount& found : diagnose(without_attributes(mesh), options).conditions)
+        counts[found.condition].*side += found.count;
+}
 
 struct Reshaped {
     ChangedModel changed;
     Measuring measuring = Measuring::none;
     std::optional<SurfaceDistance> distance;
-    double corner_angle = 0.0;         ///< What --max-normal-error limits, in degrees.
+    /// What --max-normal-error limits, in degrees; absent if all vertices are new.
+    std::optional<double> corner_angle;
+    bool with_conditions = false;
+    ConditionCounts conditions;
     std::vector<std::string> omitted;  ///< Content that the output format cannot store.
     Findings findings;
     /// The input has at most as many triangles as --triangles, so that nothing was removed.
@@ -201,6 +203,7 @@ struct Reshaping {
     ModelChange change;
     Measuring measuring = Measuring::none;
     std::optional<std::size_t> max_triangles{};  ///< --triangles
+    bool with_conditions = false;                ///< Counts them before and after.
 };
 
 /// Reads, changes and writes a model.
@@ -210,10 +213,16 @@ Reshaped run(const Job& job, const Reshaping& reshaping, Stages& stages) {
     Model model = stages.run("read", [&] { return read_model(job.input, read_report); });
     done.findings.add("", read_report);
     done.measuring = reshaping.measuring;
+    done.with_conditions = reshaping.with_conditions;
     std::vector<SurfacePair> pairs;
     const ModelChange kept_change = [&](std::span<const TriangleInput> meshes,
                                         std::span<Report> reports, Report& whole) {
         std::vector<FramedMesh> changed = reshaping.change(meshes, reports, whole);
+        for (std::size_t i = 0; i < meshes.size() && reshaping.with_conditions; ++i) {
+            using Counts = std::pair<std::size_t, std::size_t>;
+            add_conditions(meshes[i].mesh, &Counts::first, done.conditions);
+            add_conditions(changed[i].mesh, &Counts::second, done.conditions);
+        }
         for (std::size_t i = 0; i < meshes.size() && reshaping.measuring != Measuring::none; ++i)
             pairs.push_back({without_attributes(meshes[i].mesh),
                              {without_attributes(changed[i].mesh), changed[i].source_vertex},
@@ -231,8 +240,10 @@ Reshaped run(const Job& job, const Reshaping& reshaping, Stages& stages) {
     if (reshaping.measuring != Measuring::none)
         done.distance = stages.run("measure", [&] {
             for (const SurfacePair& pair : pairs) {
+                if (pair.after.source_vertex.empty()) continue;
                 const double angle = max_corner_angle(pair.before, pair.after);
-                done.corner_angle = std::max(done.corner_angle, angle * 180.0 / std::numbers::pi);
+                done.corner_angle =
+                    std::max(done.corner_angle.value_or(0.0), angle * 180.0 / std::numbers::pi);
             }
             return joined_distance(reshaping.measuring == Measuring::quick ? quick_distances(pairs)
                                                                            : full_distances(pairs));
@@ -289,13 +300,30 @@ void add_distance(Summary& summary, const Reshaped& done) {
             max_farther_part(distance.from_b.samples, confidence);
     }
     summary.add("distance", lines, {{"distance", std::move(json)}});
-    summary.add(
-        "angle",
-        {fmt::format("between normals of IN and OUT: {}; of OUT and IN: {} degrees",
-                     angle(distance.from_a), angle(distance.from_b)),
-         fmt::format("at corners of OUT, as --max-normal-error limits it: max {:.3g} degrees",
-                     done.corner_angle)},
-        {{"max_corner_degrees", done.corner_angle}});
+    std::vector<std::string> angles = {
+        fmt::format("between normals of IN and OUT: {}; of OUT and IN: {} degrees",
+                    angle(distance.from_a), angle(distance.from_b))};
+    Json angles_json = Json::object();
+    if (done.corner_angle) {
+        angles.push_back(
+            fmt::format("at corners of OUT, as --max-normal-error limits it: max {:.3g} degrees",
+                        *done.corner_angle));
+        angles_json["max_corner_degrees"] = *done.corner_angle;
+    }
+    summary.add("angle", angles, std::move(angles_json));
+}
+
+/// Adds the conditions that `relief-mesh check` counts, before and after.
+void add_conditions(Summary& summary, const ConditionCounts& counts) {
+    std::vector<std::string> lines;
+    Json json = Json::array();
+    for (const auto& [condition, count] : counts) {
+        const MeshConditionInfo& info = condition_info(condition);
+        lines.push_back(fmt::format("{}: {} -> {}", info.word, count.first, count.second));
+        json.push_back({{"kind", info.word}, {"before", count.first}, {"after", count.second}});
+    }
+    if (lines.empty()) lines.emplace_back("none");
+    summary.add("checked", lines, {{"conditions", std::move(json)}});
 }
 
 Summary summary_of(const Job& job, const Reshaped& done, const Stages& stages) {
@@ -314,6 +342,7 @@ Summary summary_of(const Job& job, const Reshaped& done, const Stages& stages) {
                 {{"triangles_written", changed.triangles_written},
                  {"vertices_written", changed.vertices_written}});
     if (done.distance) add_distance(summary, done);
+    if (done.with_conditions) add_conditions(summary, done.conditions);
     summary.add_findings(done.findings);
     add_omitted(summary, done.omitted, job.output);
     summary.add_times(stages);
@@ -329,15 +358,6 @@ std::string line_of(const Job& job, const Reshaped& done, const Stages& stages) 
         counted(done.changed.vertices_written, "vertex", "vertices"), done.findings.count_text(),
         done.omitted.empty() ? "" : fmt::format(", left out: {}", fmt::join(done.omitted, ", ")),
         duration(stages.milliseconds()));
-}
-
-/// Adds the files, --normals, --report, --strict, --threads and --quiet.
-void add_reshape_options(CLI::App& app, ReshapeRequest& request, const std::string& about_normals) {
-    add_model_files(app, request.words, request.format);
-    add_choice(app, "--normals", request.normals, enum_choices<NormalMode>(), about_normals)
-        .group("Frames");
-    add_report_options(app, request.report);
-    add_general_options(app, request.general);
 }
 
 /// Checks the files before the first is read. \throws UsageError, FileError
@@ -393,23 +413,38 @@ void check_measuring(const ReshapeRequest& request, bool is_single) {
                      "leave it out, or add --report");
 }
 
-/// Runs a command: reads, changes and writes the models, and reports.
-///
-/// \param options  the command's options for the report
-/// \throws UsageError, FileError; then no file is written
+}  // namespace
+
+void add_reshape_options(CLI::App& app, ReshapeRequest& request, const std::string& about_normals) {
+    add_model_files(app, request.words, request.format);
+    if (!about_normals.empty())
+        add_choice(app, "--normals", request.normals, enum_choices<NormalMode>(), about_normals)
+            .group("Frames");
+    add_report_options(app, request.report);
+    add_general_options(app, request.general);
+}
+
+Measuring measuring_of(const ReshapeRequest& request) {
+    if (request.general.quiet && !request.report.file) return Measuring::none;
+    return request.measuring.value_or(Measuring::quick);
+}
+
 ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const ModelChange& change,
-                 Measuring measuring, const Json& options,
-                 std::optional<std::size_t> max_triangles = std::nullopt) {
+                 Measuring measuring, const Json& options, std::optional<std::size_t> max_triangles,
+                 bool with_conditions) {
     const JobList list = model_jobs_of(request.words, request.format);
     check_measuring(request, list.is_single());
     check_files(request, list);
     set_thread_limit(request.general.threads);
-    const Reshaping reshaping{command_name(app), request.normals, change, measuring, max_triangles};
+    const Reshaping reshaping{command_name(app), request.normals, change,
+                              measuring,         max_triangles,   with_conditions};
     const Json head = {
         {"tool", "relief-mesh " + command_name(app)}, {"version", version()}, {"options", options}};
     return list.is_single() ? reshape_one(app, request, list.jobs.front(), reshaping, head)
                             : reshape_all(app, request, list, reshaping, head);
 }
+
+namespace {
 
 struct DecimateCommand {
     ReshapeRequest request;
@@ -482,13 +517,6 @@ void check_limits(const DecimateCommand& command) {
                         enum_name(command.request.normals)),
             "leave one of them out");
     }
-}
-
-/// Returns how distances are measured: by default at random samples, and not at all if nothing is
-/// reported.
-Measuring measuring_of(const ReshapeRequest& request) {
-    if (request.general.quiet && !request.report.file) return Measuring::none;
-    return request.measuring.value_or(Measuring::quick);
 }
 
 Json options_json(const DecimateCommand& command) {
