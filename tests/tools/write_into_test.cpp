@@ -64,6 +64,21 @@ TEST_F(WriteInto, MakesAModelFromLowWithAllMapsOfTheBake) {
     EXPECT_EQ(place_.run("relief-mesh check out/low.gltf --strict").exit_code, 0);
 }
 
+TEST_F(WriteInto, ModelsWithoutNormalsGetThoseOfTheBake) {
+    place_.write("bent.obj",
+                 "v -1 -1 0\nv 1 -1 0\nv 1 1 0.4\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                 "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
+    ASSERT_EQ(bake("bent.obj out/n.png --write-into out/bent.gltf").exit_code, 0);
+    ASSERT_EQ(place_.run("relief-mesh process bent.obj out/processed.gltf").exit_code, 0);
+    const auto normals_of = [&](const char* file) {
+        const GltfDocument document = read_document(place_ / file);
+        return document.mesh({0, 0}).normals;
+    };
+    const std::vector<glm::vec3> normals = normals_of("out/bent.gltf");
+    EXPECT_EQ(normals.size(), 4U) << "averaged normals split no vertex";
+    EXPECT_EQ(normals, normals_of("out/processed.gltf"));
+}
+
 TEST_F(WriteInto, ReplacesTheMapsOfLowItselfAndShowsThemAsTheyAre) {
     ASSERT_EQ(bake("low.obj out/n.png --color-map out/c.png --write-into out/low.gltf").exit_code,
               0);

@@ -10,6 +10,7 @@
 
 #include "common/model_file.h"
 #include "common/options.h"
+#include "relief/mesh/frames.h"
 #include "relief/mesh/image_file.h"
 
 namespace relief::tools {
@@ -155,8 +156,16 @@ void store_in_material(GltfDocument& document, std::size_t material, const Mater
 GltfDocument read_model_for_maps(const MaterialRequest& request, Report& report) {
     Model model = read_model(request.input, report);
     if (auto* document = std::get_if<GltfDocument>(&model)) return std::move(*document);
-    return about(request.input,
-                 [&] { return GltfDocument::from_mesh(std::get<MeshFile>(model), report); });
+    return about(request.input, [&] {
+        auto& file = std::get<MeshFile>(model);
+        // The maps are for these normals; glTF would show flat ones instead.
+        if (file.mesh.normals.empty()) {
+            FrameOptions frames;
+            frames.tangents = TangentMethod::none;
+            file.mesh = with_frames(std::move(file.mesh), frames, report).mesh;
+        }
+        return GltfDocument::from_mesh(file, report);
+    });
 }
 
 /// Makes materials show the alpha of their baked colors. If one of them is not opaque, the author
