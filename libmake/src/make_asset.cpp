@@ -18,6 +18,8 @@ namespace {
 
 constexpr int min_size = 16;
 constexpr int max_size = 16384;
+/// Smaller ones have the highlights of a mirror, which a light does not hit.
+constexpr float min_roughness = 0.03F;
 
 void check(const AssetOptions& options) {
     if (options.triangles < 1)
@@ -220,11 +222,13 @@ void Maker::bake_maps(const Baker& baker, Report& report) {
 void Maker::bake_occlusion(const Baker& baker, Report& report) {
     BakeMapOptions map = baker.options().map;
     const OcclusionOptions rays = *map.layers.occlusion;
-    const glm::ivec2 size = glm::max(options_.size / 2, glm::ivec2(1));
+    // Occlusion varies slowly, and its rays cost most.
+    constexpr int reduction = 4;
+    const glm::ivec2 size = glm::max(options_.size / reduction, glm::ivec2(1));
     map.width = size.x;
     map.height = size.y;
     map.samples = 1;
-    map.padding = (options_.padding + 1) / 2;
+    map.padding = (options_.padding + reduction - 1) / reduction;
     map.layers = {};
     map.layers.normals = false;
     map.layers.occlusion = rays;
@@ -265,6 +269,7 @@ Asset Maker::run() {
     const ExecutionScope scope(options_.execution);
     asset_.name = source_.name;
     asset_.origin = source_.origin;
+    asset_.roughness = std::clamp(source_.roughness, min_roughness, 1.0F);
     run_stage("repair", &Maker::repair);
     run_stage("decimate", &Maker::decimate);
     if (!options_.keep_texcoords) run_stage("unwrap", &Maker::unwrap_mesh);

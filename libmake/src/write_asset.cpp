@@ -27,6 +27,9 @@ GltfDocument document_of(const Asset& asset, Report& report) {
     MtlMaterial material;
     material.name = asset.name;
     material.diffuse = asset.color_map ? glm::vec3(1.0F) : asset.color;
+    // The inverse of from_mesh(), whose roughness is (2 / (Ns + 2))^(1/4).
+    const float square = asset.roughness * asset.roughness;
+    material.shininess = 2.0F / (square * square) - 2.0F;
     contents.materials.push_back(material);
     const auto count = static_cast<std::uint32_t>(asset.mesh.triangles.size());
     contents.mesh.material_ranges = {{0, count, 0U}};

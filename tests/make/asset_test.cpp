@@ -76,7 +76,7 @@ TEST(MakeAsset, HasTheRequestedTrianglesAndMaps) {
     EXPECT_NEAR(static_cast<double>(asset.mesh.triangles.size()), 300.0, 2.0);
     EXPECT_EQ(asset.normal_map.width, 64);
     ASSERT_TRUE(asset.occlusion_map);
-    EXPECT_EQ(asset.occlusion_map->width, 32);
+    EXPECT_EQ(asset.occlusion_map->width, 16);
     EXPECT_FALSE(asset.color_map) << "the source has one color";
     EXPECT_EQ(asset.bake.texels_missed, 0U);
     std::vector<std::string> stages;
@@ -288,6 +288,18 @@ TEST_F(WrittenAsset, IsReadBackAsItWasMade) {
         const GltfView view = test::read_document(folder / name).view();
         EXPECT_EQ(view.images.size(), 3U);
         EXPECT_EQ(view.images.front().name, "a_normal");
+    }
+}
+
+TEST_F(WrittenAsset, HasTheRoughnessOfTheSource) {
+    for (const float roughness : {1.0F, 0.5F, 0.0F}) {
+        AssetSource source = source_of(test::cube());
+        source.roughness = roughness;
+        write_asset(folder / "a.glb", make_asset(source, quick_options(12)), 0);
+        const GltfView view = test::read_document(folder / "a.glb").view();
+        const MetallicRoughness& surface = *view.materials.front().metallic_roughness;
+        EXPECT_NEAR(surface.roughness, std::max(roughness, 0.03F), 1e-4F);
+        EXPECT_EQ(surface.metallic, 0.0F);
     }
 }
 

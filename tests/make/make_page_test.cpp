@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "make_pictures.h"
@@ -39,13 +40,38 @@ TEST(MakePage, HasPicturesTablesAndTheCommandAndLoadsNothing) {
                        "--size 64x64 --padding 2 --crease 60"),
               1U);
     for (const char* text : {"<th scope=\"row\">decimate</th>", "<th scope=\"row\">LOD1</th>",
-                             "normals, 64 x 64", "occlusion, 32 x 32", "alt=\"source\""})
+                             "normals, 64 x 64", "occlusion, 16 x 16", "alt=\"source\""})
         EXPECT_GE(count_of(page, text), 1U);
     // Four of the models, the charts and two maps.
     EXPECT_EQ(count_of(page, "src=\"data:image/png;base64,"), 7U);
     for (const char* address : {"http://", "https://"})
         EXPECT_EQ(page.find(address), std::string::npos) << address;
     EXPECT_EQ(page.find("{{"), std::string::npos);
+}
+
+TEST_LABELS(not_sanitized);
+TEST(MakePage, HasTheMeasuredLoss) {
+    const Workplace workplace;
+    workplace.write_square("out/square.obj");
+    const std::string line =
+        "relief make out/square.obj out/a.glb --size 32 --padding 2 --occlusion-rays 0 --loss";
+    ProgramResult result = workplace.run(line + " --report out/a.html");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("FLIP, studio"));
+    const std::string page = workplace.read("out/a.html");
+    EXPECT_EQ(count_of(page, "<h2>What was lost</h2>"), 1U);
+    for (const char* row : {"FLIP, studio", "FLIP, grazing", "FLIP, base-color", "normals, degrees",
+                            "silhouettes, pixels"})
+        EXPECT_EQ(count_of(page, std::string("<th scope=\"row\">") + row + "</th>"), 1U) << row;
+    // The asset of a square is the same square, also in its color. The codes of its normal map are
+    // 0.32 degrees from flat.
+    result = workplace.run(line + " --report out/a.json");
+    const nlohmann::json loss = nlohmann::json::parse(workplace.read("out/a.json"))["loss"];
+    EXPECT_EQ(loss["views"], 12);
+    for (const nlohmann::json& figure : loss["figures"]) {
+        const bool is_flip = figure["name"].get<std::string>().starts_with("FLIP");
+        EXPECT_LT(figure["mean"].get<double>(), is_flip ? 0.05 : 0.6) << figure;
+    }
 }
 
 TEST(MakePage, DescribesOneAsset) {

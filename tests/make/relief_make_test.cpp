@@ -47,6 +47,7 @@ TEST(MakeCommand, MakesAnAssetThatPassesTheChecks) {
     for (const json& stage : report["stages"]) {
         stages.push_back(stage["stage"]);
         EXPECT_GT(stage["peak_bytes"].get<double>(), 1e6);
+        EXPECT_GE(stage["processor_milliseconds"].get<double>(), 0.0);
     }
     EXPECT_EQ(stages, (std::vector<std::string>{"read", "repair", "decimate", "unwrap", "frames",
                                                 "bake", "write", "verify"}));
@@ -89,7 +90,7 @@ TEST(MakeCommand, WritesMapsForEngines) {
     const ImageInfo info = read_image_info(workplace / "out/urn_N.png");
     EXPECT_EQ(info.metadata.at("relief:green"), "down");
     EXPECT_EQ(info.width, 64);
-    EXPECT_EQ(read_image_info(workplace / "out/urn_ORM.png").width, 32);
+    EXPECT_EQ(read_image_info(workplace / "out/urn_ORM.png").width, 16);
 }
 
 TEST(MakeCommand, MakesManyAssetsAlthoughOneFails) {
@@ -124,16 +125,16 @@ TEST(MakeCommand, RefusesWhatItCannotDo) {
     workplace.write("out/old.glb", "old");
     std::filesystem::create_directory(workplace / "in");
     std::filesystem::rename(workplace / "out/empty.ply", workplace / "in/empty.ply");
-    expect_refusals(
-        workplace, "relief", "old.glb",
-        {{"relief make in/empty.ply out/old.glb", 1, "in/empty.ply: "},
-         {"relief make none.ply out/old.glb", 1, "none.ply: no such file"},
-         {"relief make data/vase.obj out/old.obj", 2, "cannot hold the maps of an asset"},
-         {"relief make data/vase.obj out/old.glb --triangles 0", 2, "--triangles 0: "},
-         {"relief make data/vase.obj out/old.glb --size 8", 2, "--size 8: "},
-         {"relief make data/vase.obj out/old.glb --crease 200", 2, "--crease 200: "},
-         {"relief make data/vase.obj none/old.glb", 1,
-          "none/old.glb: the folder none does not exist"}});
+    expect_refusals(workplace, "relief", "old.glb",
+                    {{"relief make in/empty.ply out/old.glb", 1, "in/empty.ply: "},
+                     {"relief make none.ply out/old.glb", 1, "none.ply: no such file"},
+                     {"relief make data/vase.obj out/old.obj", 2,
+                      "out/old.obj: cannot hold the maps of an asset"},
+                     {"relief make data/vase.obj out/old.glb --triangles 0", 2, "--triangles 0: "},
+                     {"relief make data/vase.obj out/old.glb --size 8", 2, "--size 8: "},
+                     {"relief make data/vase.obj out/old.glb --crease 200", 2, "--crease 200: "},
+                     {"relief make data/vase.obj none/old.glb", 1,
+                      "none/old.glb: the folder none does not exist"}});
 }
 
 TEST(MakeCommand, RefusesModelsThatMove) {

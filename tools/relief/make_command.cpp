@@ -15,6 +15,7 @@
 #include "common/options.h"
 #include "common/summary.h"
 #include "driver.h"
+#include "make_cache.h"
 #include "make_job.h"
 #include "make_page.h"
 
@@ -26,6 +27,8 @@ struct MakeCommand {
     MakeRequest request;
     ReportOptions report;
     GeneralOptions general;
+    bool explain = false;
+    bool force = false;
 };
 
 JobList make_jobs_of(const MakeCommand& command) {
@@ -78,6 +81,7 @@ Json options_json(const MakeCommand& command) {
                  {"occlusion_rays", asset.occlusion ? asset.occlusion_rays : 0},
                  {"lods", asset.levels},
                  {"for", enum_name(command.request.engine)}};
+    json["loss"] = command.request.measures_loss;
     json["crease"] = nullptr;
     if (asset.crease_angle) json["crease"] = *asset.crease_angle * 180.0 / std::numbers::pi;
     return json;
@@ -98,10 +102,25 @@ std::string repeating_line(const MakeCommand& command, const Job& job) {
         asset.crease_angle ? fmt::format("{:.6g}", *asset.crease_angle * 180.0 / std::numbers::pi)
                            : "none");
     if (asset.keep_texcoords) line += " --keep-uvs";
+    if (command.request.measures_loss) line += " --loss";
     line += fmt::format(" --samples {} --occlusion-rays {} --lods {} --for {}", asset.samples,
                         asset.occlusion ? asset.occlusion_rays : 0, asset.levels,
                         enum_name(command.request.engine));
     return line;
+}
+
+/// Prints the plans of all jobs.
+ExitCode explain(const MakeCommand& command, const JobList& list) {
+    for (const Job& job : list.jobs) {
+        SourceFacts facts;
+        Findings findings;
+        Stages stages(command.general.quiet);
+        const make::AssetSource source =
+            stages.run("read", [&] { return read_source(job.input, facts, findings); });
+        print_entry("plan", fmt::format("{} -> {}", job.input.string(), job.output.string()));
+        print_entry("", lines_of(plan_of(command.request, source), command.general.threads));
+    }
+    return ExitCode::done;
 }
 
 ExitCode make_one(const CLI::App& app, const MakeCommand& command, const Job& job, Json head) {
@@ -123,14 +142,26 @@ ExitCode make_one(const CLI::App& app, const MakeCommand& command, const Job& jo
 }
 
 ExitCode make_all(const CLI::App& app, const MakeCommand& command, const JobList& list, Json head) {
+    MakeCache cache(list.folder.value_or(list.jobs.front().output.parent_path()));
     Batch batch;
     batch.jobs = list.jobs;
     batch.one_by_one = true;  // Each asset uses all processors and much memory.
     batch.head = std::move(head);
     batch.work = [&](std::size_t index) -> FileOutcome {
         const Job& job = list.jobs[index];
+        const std::string options =
+            fmt::format("{} {}", job.input.string(), options_json(command).dump());
+        if (!command.force && cache.is_current(job.output, options)) {
+            Summary skipped;
+            skipped.add_json({{"input", job.input.string()},
+                              {"output", job.output.string()},
+                              {"unchanged", true}});
+            return {fmt::format("{}: unchanged", job.output.string()), {}, skipped};
+        }
         Stages stages(true);
         const MadeAsset made = make_file(command.request, job, stages);
+        cache.add(job.output, options, made.inputs, made.files);
+        cache.write();
         return {line_of(job, made, stages), made.findings,
                 summary_of(command.request, job, made, stages)};
     };
@@ -144,8 +175,9 @@ ExitCode make(const CLI::App& app, const MakeCommand& command) {
             fmt::format("--report {}: a page describes one asset", command.report.file->string()),
             "give a .json file for several");
     }
-    check_outputs(command, list);
     set_thread_limit(command.general.threads);
+    if (command.explain) return explain(command, list);
+    check_outputs(command, list);
     const Json head = {
         {"tool", "relief make"}, {"version", version()}, {"options", options_json(command)}};
     return list.is_single() ? make_one(app, command, list.jobs.front(), head)
@@ -215,7 +247,7 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
               })
         .group(maps);
     add_value(app, "--occlusion-rays", "N",
-              "The rays of a texel of the occlusion map, which has half the size of the others, 0 "
+              "The rays of a texel of the occlusion map, which has a quarter of their size, 0 "
               "to 4096. 0: there is no occlusion map. Default: 32.",
               [&asset](const std::string& subject, const std::string& text) {
                   asset.occlusion_rays = parse_integer(subject, text, 0, 4096);
@@ -232,6 +264,18 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
     add_choice(app, "--for", command.request.engine, enum_choices<Engine>(),
                "The engine. unity and unreal: also write maps as PNG files beside the asset, with "
                "the names, channels and green of the engine. Default: gltf.")
+        .group(output);
+    add_switch(app, "--loss", command.request.measures_loss,
+               "Measure what was lost: differences of pictures (FLIP) with three lights, degrees "
+               "between normals and pixels between silhouettes, in 12 views. Needs OpenGL, also "
+               "without a GPU.")
+        .group(output);
+    add_switch(app, "--force", command.force,
+               "In a folder, make all assets again. Otherwise those whose options and files are "
+               "unchanged are left as they are, by the file relief-make.json of the folder.")
+        .group(output);
+    add_switch(app, "--explain", command.explain,
+               "Print the stages with estimated times, and make nothing.")
         .group(output);
     add_report_options(app, command.report);
     add_general_options(app, command.general);

@@ -15,6 +15,9 @@
 
 #include "common/model_file.h"
 #include "file_replacement.h"
+#include "make_loss.h"
+#include "make_pictures.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/map_description.h"
 #include "relief/mesh/normal_map.h"
@@ -31,6 +34,16 @@ std::uint64_t peak_memory() {
 #else
     return 1024 * static_cast<std::uint64_t>(use.ru_maxrss);
 #endif
+}
+
+/// Returns the processor time of this process, in all threads.
+double processor_seconds() {
+    rusage use{};
+    ::getrusage(RUSAGE_SELF, &use);
+    const auto seconds = [](const timeval& time) {
+        return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    };
+    return seconds(use.ru_utime) + seconds(use.ru_stime);
 }
 
 /// Engines that read the maps of glTF files in their convention need no other files.
@@ -100,6 +113,18 @@ void write_engine_maps(const MakeRequest& request, const std::filesystem::path& 
             map_file(output, "_color"), *asset.color_map,
             write_description({.kind = MapKind::color, .color_space = ColorSpace::srgb}, 8));
     }
+}
+
+/// Measures what was lost, or reports why that is not possible.
+void measure_loss(const MakeRequest& request, const Job& job, MadeAsset& made) {
+    Report report;
+    try {
+        AssetScenes scenes(job.input, job.output, request.asset.crease_angle);
+        made.loss = scenes.measure(report);
+    } catch (const shade::GpuError& error) {
+        report.add("loss that cannot be measured", "asset", 0, error.what());
+    }
+    made.findings.add("loss", report);
 }
 
 std::string atlas_text(const AtlasStats& stats, const glm::ivec2& size) {
@@ -173,20 +198,24 @@ Json level_json(const make::AssetLevel& level) {
 
 std::vector<std::string> stage_lines(const MadeAsset& made, const Stages& stages) {
     std::vector<std::string> lines;
-    for (const StageMemory& stage : made.memory) {
+    double processor = 0.0;
+    for (const StageUse& stage : made.stages) {
         const double milliseconds = stages.milliseconds(stage.stage);
-        lines.push_back(fmt::format("{:<9}{:>9}{:>12}", stage.stage, duration(milliseconds),
+        lines.push_back(fmt::format("{:<9}{:>9}{:>11}{:>11}", stage.stage, duration(milliseconds),
+                                    duration(1e3 * stage.processor_seconds),
                                     byte_size(stage.peak_bytes)));
+        processor += stage.processor_seconds;
     }
-    lines.push_back(fmt::format("{:<9}{:>9}   (memory: the peak so far)", "all",
-                                duration(stages.milliseconds())));
+    lines.push_back(fmt::format("{:<9}{:>9}{:>11}   (time, processor time, peak memory so far)",
+                                "all", duration(stages.milliseconds()), duration(1e3 * processor)));
     return lines;
 }
 
 Json stages_json(const MadeAsset& made, const Stages& stages) {
-    return json_list(made.memory, [&](const StageMemory& stage) -> Json {
+    return json_list(made.stages, [&](const StageUse& stage) -> Json {
         return {{"stage", stage.stage},
                 {"milliseconds", stages.milliseconds(stage.stage)},
+                {"processor_milliseconds", 1e3 * stage.processor_seconds},
                 {"peak_bytes", stage.peak_bytes}};
     });
 }
@@ -208,11 +237,17 @@ MadeAsset make_file(const MakeRequest& request, const Job& job, Stages& stages) 
     MadeAsset made;
     const auto run_stage = [&](std::string_view name, const std::function<void()>& work) {
         const std::string stage(name);
+        const double before = processor_seconds();
         stages.run(stage, work);
-        made.memory.push_back({stage, peak_memory()});
+        made.stages.push_back({stage, peak_memory(), processor_seconds() - before});
     };
     make::AssetSource source;
-    run_stage("read", [&] { source = read_source(job.input, made.source, made.findings); });
+    run_stage("read", [&] {
+        Progress opened;
+        const ProgressScope scope(opened);
+        source = read_source(job.input, made.source, made.findings);
+        made.inputs = names_of(opened.files());
+    });
     source.name = job.output.stem().string();
     make::AssetOptions options = request.asset;
     options.run_stage = run_stage;
@@ -235,6 +270,7 @@ MadeAsset make_file(const MakeRequest& request, const Job& job, Stages& stages) 
         made.findings.add("verify", problems);
     });
     files.commit();
+    if (request.measures_loss) run_stage("loss", [&] { measure_loss(request, job, made); });
     for (const std::filesystem::path& file : outputs_of(request, job.output)) {
         const bool is_color = file == map_file(job.output, "_color");
         if (!is_color || made.asset.color_map) made.files.push_back(file);
@@ -269,6 +305,7 @@ Summary summary_of(const MakeRequest& request, const Job& job, const MadeAsset& 
     }
     summary.add("maps", map_lines(made), maps_json(asset));
     summary.add("levels", level_lines(made), {{"levels", json_list(made.levels, level_json)}});
+    if (made.loss) summary.add("loss", loss_lines(*made.loss), {{"loss", loss_json(*made.loss)}});
     summary.add_findings(made.findings);
     summary.add("stages", stage_lines(made, stages), {{"stages", stages_json(made, stages)}});
     std::vector<std::string> written;

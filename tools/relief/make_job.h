@@ -14,12 +14,14 @@
 #include "common/summary.h"
 #include "engines.h"
 #include "relief/make/asset.h"
+#include "relief/shade/fidelity.h"
 
 namespace relief::tools {
 
 struct MakeRequest {
     make::AssetOptions asset;
     Engine engine = Engine::gltf;
+    bool measures_loss = false;
 };
 
 /// What is known of the dense model after it is read.
@@ -39,28 +41,42 @@ struct SourceFacts {
 make::AssetSource read_source(const std::filesystem::path& file, SourceFacts& facts,
                               Findings& findings);
 
-/// The peak memory of the process at the end of a stage.
-struct StageMemory {
+/// What a stage used besides the time in Stages.
+struct StageUse {
     std::string stage;
-    std::uint64_t peak_bytes = 0;
+    std::uint64_t peak_bytes = 0;  ///< Of the process, up to the end of the stage.
+    double processor_seconds = 0.0;
 };
 
 struct MadeAsset {
     SourceFacts source;
     make::Asset asset;
     std::vector<make::AssetLevel> levels;
+    std::optional<shade::Fidelity> loss;
+    std::vector<std::filesystem::path> inputs;  ///< Every file that was read or searched.
     std::vector<std::filesystem::path> files;
-    std::vector<StageMemory> memory;
+    std::vector<StageUse> stages;
     Findings findings;
 };
+
+/// A stage of the plan that --explain prints.
+struct PlannedStage {
+    std::string name;
+    std::string text;
+    double processor_seconds = 0.0;  ///< Estimated.
+};
+std::vector<PlannedStage> plan_of(const MakeRequest& request, const make::AssetSource& source);
+
+/// \param threads  0: all of the machine
+std::vector<std::string> lines_of(const std::vector<PlannedStage>& plan, unsigned threads);
 
 /// The files of a job: the asset, and for some engines its maps.
 std::vector<std::filesystem::path> outputs_of(const MakeRequest& request,
                                               const std::filesystem::path& output);
 
 /// Reads, makes, writes and verifies an asset. The stages are those of make::stages_of() between
-/// "read", and "write" and "verify". All files are replaced together at the end.
-/// \throws FileError, UsageError; then no file is changed
+/// "read", and "write", "verify" and, if requested, "loss". All files are replaced together at the
+/// end. \throws FileError, UsageError; then no file is changed
 MadeAsset make_file(const MakeRequest& request, const Job& job, Stages& stages);
 
 Summary summary_of(const MakeRequest& request, const Job& job, const MadeAsset& made,

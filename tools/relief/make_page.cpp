@@ -14,6 +14,9 @@
 #include "common/text.h"
 #include "file_replacement.h"
 #include "files.h"
+#include "make_loss.h"
+#include "make_pictures.h"
+#include "page_parts.h"
 #include "relief/mesh/image_file.h"
 
 namespace relief::tools {
@@ -60,6 +63,7 @@ class PageWriter {
     [[nodiscard]] std::string comparison() const;
     [[nodiscard]] std::string findings() const;
     [[nodiscard]] std::string stages() const;
+    [[nodiscard]] std::string loss() const;
     [[nodiscard]] std::string levels() const;
     [[nodiscard]] std::string maps() const;
 
@@ -94,8 +98,8 @@ std::string PageWriter::figures() const {
 std::string PageWriter::comparison() const {
     const glm::ivec2 size(960, 720);
     try {
-        const AssetPictures pictures =
-            draw_asset(job_.input, job_.output, made_.asset, request_.asset.crease_angle, size);
+        AssetScenes scenes(job_.input, job_.output, request_.asset.crease_angle);
+        const AssetPictures pictures = scenes.draw(made_.asset, size);
         return fmt::format(
             "<figure class=\"comparison\">\n<div class=\"stack\">{}{}</div>\n"
             "<div class=\"controls\"><input type=\"range\" min=\"0\" max=\"100\" value=\"50\" "
@@ -134,16 +138,38 @@ std::string table(const std::string& head, const std::string& rows) {
 std::string PageWriter::stages() const {
     const double all = std::max(stages_.milliseconds(), 1e-9);
     std::string rows;
-    for (const StageMemory& stage : made_.memory) {
+    for (const StageUse& stage : made_.stages) {
         const double time = stages_.milliseconds(stage.stage);
         rows += fmt::format(
-            "<tr><th scope=\"row\">{}</th><td>{}</td><td>{:.0f} %</td><td>{}</td></tr>\n",
-            stage.stage, duration(time), 100.0 * time / all, byte_size(stage.peak_bytes));
+            "<tr><th scope=\"row\">{}</th><td>{}</td><td>{:.0f} "
+            "%</td><td>{}</td><td>{}</td></tr>\n",
+            stage.stage, duration(time), 100.0 * time / all,
+            duration(1e3 * stage.processor_seconds), byte_size(stage.peak_bytes));
     }
     return table(
         "<th scope=\"col\">stage</th><th scope=\"col\">time</th><th scope=\"col\">share</th>"
+        "<th scope=\"col\">processor time</th>"
         "<th scope=\"col\">memory</th>",
         rows);
+}
+
+std::string PageWriter::loss() const {
+    if (!made_.loss) return "";
+    std::string rows;
+    for (const LossRow& row : loss_rows(*made_.loss)) {
+        rows += fmt::format(
+            "<tr><th scope=\"row\">{}</th><td>{:.4f}</td><td>{}</td><td>{:.4f} (view {})</td>"
+            "<td>{:.4f}</td></tr>\n",
+            row.name, row.mean, row.p95 ? fmt::format("{:.4f}", *row.p95) : "–", row.worst,
+            row.worst_view, row.floor);
+    }
+    return fmt::format(
+        "<h2>What was lost</h2>\n<p>The source against the asset in {} views, {:.0f} pixels "
+        "across.</p>\n{}",
+        made_.loss->views.size(), made_.loss->pixels_across,
+        table("<th scope=\"col\">difference</th><th scope=\"col\">mean</th><th scope=\"col\">95 "
+              "%</th><th scope=\"col\">worst view</th><th scope=\"col\">noise floor</th>",
+              rows));
 }
 
 std::string PageWriter::levels() const {
@@ -200,6 +226,7 @@ void write_make_page(const std::filesystem::path& file, const MakeRequest& reque
                                    {"command", html_escaped(command)},
                                    {"findings", writer.findings()},
                                    {"stages", writer.stages()},
+                                   {"loss", writer.loss()},
                                    {"levels", writer.levels()},
                                    {"maps", writer.maps()},
                                    {"version", html_escaped("relief " + version() + ".")}});

@@ -6,11 +6,8 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "make_job.h"
-#include "make_pictures.h"
 
 namespace relief::tools {
 
@@ -19,13 +16,5 @@ namespace relief::tools {
 /// \throws FileError
 void write_make_page(const std::filesystem::path& file, const MakeRequest& request, const Job& job,
                      const MadeAsset& made, const Stages& stages, const std::string& command);
-
-/// A file of the folder page/.
-struct MakePagePart {
-    std::string_view name;
-    std::string_view text;
-};
-/// All files of page/. cmake/embed_files.cmake generates this function.
-const std::vector<MakePagePart>& make_page_parts();
 
 }  // namespace relief::tools

@@ -36,6 +36,14 @@ Scene source_scene(const std::filesystem::path& file, const std::filesystem::pat
         frames.crease_angle = crease_angle;
         contents.mesh = with_frames(std::move(contents.mesh), frames, ignored).mesh;
     }
+    if (contents.materials.empty()) {
+        // The asset is white and matte then. A renderer's default material need not be.
+        MtlMaterial white;
+        white.diffuse = glm::vec3(1.0F);
+        contents.materials.push_back(white);
+        const auto count = static_cast<std::uint32_t>(contents.mesh.triangles.size());
+        contents.mesh.material_ranges = {{0, count, 0U}};
+    }
     std::filesystem::path converted = beside;
     converted.replace_filename(beside.stem().string() + "-source.glb");
     const relief::detail::FileSet temporary;  // It is never committed.
@@ -53,8 +61,8 @@ Scene without_maps(Scene scene) {
     return scene;
 }
 
-Image draw(RenderCache& cache, const Context& context, Scene scene, const Camera& camera,
-           const glm::ivec2& size) {
+Image draw_picture(RenderCache& cache, const Context& context, Scene scene, const Camera& camera,
+                   const glm::ivec2& size) {
     Report ignored;
     add_default_lights(scene, camera);
     scene.background = glm::vec4(0.03F, 0.033F, 0.037F, 1.0F);
@@ -67,25 +75,42 @@ Image draw(RenderCache& cache, const Context& context, Scene scene, const Camera
 
 }  // namespace
 
-AssetPictures draw_asset(const std::filesystem::path& source, const std::filesystem::path& asset,
-                         const make::Asset& made, std::optional<double> crease_angle,
-                         const glm::ivec2& size) {
-    const Context context;
-    RenderCache cache(context);
+struct AssetScenes::Implementation {
+    Context context;
+    RenderCache cache{context};
+    Scene source;
+    Scene asset;
+};
+
+AssetScenes::AssetScenes(const std::filesystem::path& source, const std::filesystem::path& asset,
+                         std::optional<double> crease_angle)
+    : implementation_(std::make_unique<Implementation>()) {
     Report ignored;
-    const Scene high = source_scene(source, asset, crease_angle);
     SceneOptions options;
     options.up = UpAxis::y;
-    const Scene low = load_scene(asset, options, ignored);
+    implementation_->source = source_scene(source, asset, crease_angle);
+    implementation_->asset = load_scene(asset, options, ignored);
+}
+
+AssetScenes::~AssetScenes() = default;
+
+AssetPictures AssetScenes::draw(const make::Asset& made, const glm::ivec2& size) {
+    auto& [context, cache, source, asset] = *implementation_;
     const ViewDirection view = best_view(made.mesh);
     const float aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
-    const Camera camera = framed(high, view.azimuth, view.elevation, default_vertical_fov, aspect);
+    const Camera camera =
+        framed(source, view.azimuth, view.elevation, default_vertical_fov, aspect);
     AssetPictures pictures;
     pictures.backend = context.backend_name();
-    pictures.source = draw(cache, context, high, camera, size);
-    pictures.asset = draw(cache, context, low, camera, size);
-    pictures.plain = draw(cache, context, without_maps(low), camera, size);
+    pictures.source = draw_picture(cache, context, source, camera, size);
+    pictures.asset = draw_picture(cache, context, asset, camera, size);
+    pictures.plain = draw_picture(cache, context, without_maps(asset), camera, size);
     return pictures;
+}
+
+Fidelity AssetScenes::measure(Report& report) {
+    FidelityMeter meter(implementation_->context, implementation_->source, {}, report);
+    return meter.measure(implementation_->asset, report);
 }
 
 Image draw_charts(const make::Asset& made, const glm::ivec2& size) {

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Pictures of an asset and its source for the report page. OpenGL is loaded only by this call.
+/// Pictures of an asset and its source for the report page. OpenGL is loaded only by the
+/// constructor of AssetScenes.
 /// Tests: tests/make/make_page_test.cpp.
 #pragma once
 
 #include <filesystem>
 #include <glm/vec2.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "relief/make/asset.h"
 #include "relief/mesh/image.h"
+#include "relief/shade/fidelity.h"
 
 namespace relief::tools {
 
@@ -22,12 +25,29 @@ struct AssetPictures {
     std::string backend;  ///< "OSMesa"
 };
 
-/// \param source  the file of the dense model; its materials are those of glTF
-/// \param asset   the written file; `made` is its content
-/// \throws Error if nothing can be drawn
-AssetPictures draw_asset(const std::filesystem::path& source, const std::filesystem::path& asset,
-                         const make::Asset& made, std::optional<double> crease_angle,
-                         const glm::ivec2& size);
+/// A source and its asset, loaded to be drawn.
+class AssetScenes {
+  public:
+    /// \param source  the file of the dense model; its materials are those of glTF
+    /// \param asset   the written file
+    /// \param crease_angle  for a source without normals
+    /// \throws Error if nothing can be drawn
+    AssetScenes(const std::filesystem::path& source, const std::filesystem::path& asset,
+                std::optional<double> crease_angle);
+    ~AssetScenes();
+    AssetScenes(const AssetScenes&) = delete;
+    AssetScenes& operator=(const AssetScenes&) = delete;
+
+    /// \param made  the content of the asset's file
+    AssetPictures draw(const make::Asset& made, const glm::ivec2& size);
+
+    /// Measures what the asset lost.
+    shade::Fidelity measure(Report& report);
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
 
 /// Draws the charts of an asset.
 Image draw_charts(const make::Asset& made, const glm::ivec2& size);

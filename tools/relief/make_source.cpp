@@ -74,6 +74,29 @@ void report_other_textures(const MapAppearance& appearance, Report& report) {
     }
 }
 
+/// Returns the roughness that all materials have; otherwise their mean, which is reported. Metallic
+/// surfaces are reported, too.
+float common_roughness(const MapAppearance& appearance, Report& report) {
+    if (appearance.materials.empty()) return 1.0F;
+    constexpr float tolerance = 0.01F;
+    float sum = 0.0F, min = 1.0F, max = 0.0F;
+    for (std::size_t i = 0; i < appearance.materials.size(); ++i) {
+        const MetallicRoughness& surface = *appearance.materials[i].metallic_roughness;
+        sum += surface.roughness;
+        min = std::min(min, surface.roughness);
+        max = std::max(max, surface.roughness);
+        if (surface.metallic > 0.0F) {
+            report.add("metallic material of the source", "material", i,
+                       "is not metallic in the asset");
+        }
+    }
+    if (max - min <= tolerance) return max;
+    const float mean = sum / static_cast<float>(appearance.materials.size());
+    report.add("source with materials of different roughness", "source", 0,
+               fmt::format("has the mean, {:.2f}, everywhere", mean));
+    return mean;
+}
+
 std::size_t triangles_of(const MapModel& model) {
     std::size_t count = 0;
     for (const MapModelPart& part : model.parts)
@@ -98,6 +121,7 @@ make::AssetSource read_source(const std::filesystem::path& file, SourceFacts& fa
     report_other_textures(appearance, report);
     make::AssetSource source;
     source.origin = model.origin;
+    source.roughness = common_roughness(appearance, report);
     source.mesh = about(file, [&] { return joined(std::move(model.parts)); });
     facts.vertices = source.mesh.positions.size();
     HighTextures textures;

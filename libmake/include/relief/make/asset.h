@@ -36,6 +36,7 @@ struct AssetSource {
     std::vector<HighMaterial> materials;
     /// The material of triangles without a material.
     std::optional<HighMaterial> otherwise;
+    float roughness = 1.0F;                    ///< Of the asset's material, above 0 to 1.
     AlphaMode alpha_mode = AlphaMode::opaque;  ///< If a material has an opacity.
     float alpha_cutoff = 0.5F;                 ///< For AlphaMode::mask.
 };
@@ -51,7 +52,7 @@ struct AssetOptions {
     std::optional<double> crease_angle = 1.0471975511965976;  // 60 degrees
     /// Keeps the texture coordinates of the source instead of computing new ones.
     bool keep_texcoords = false;
-    bool occlusion = true;    ///< Bakes an occlusion map of half the size.
+    bool occlusion = true;    ///< Bakes an occlusion map of a quarter of the size.
     int occlusion_rays = 32;  ///< Per texel of the occlusion map.
     int samples = 1;          ///< Per texel (BakeMapOptions::samples).
     std::size_t levels = 0;   ///< Levels of detail; each has half the triangles of the one before.
@@ -95,6 +96,7 @@ struct Asset {
     /// sRGB, with opacity in alpha if `alpha_mode` is not opaque. Absent: the source has one color.
     std::optional<Image> color_map;
     glm::vec3 color{0.8F};  ///< Linear; of an asset without a color map.
+    float roughness = 1.0F;
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5F;
     std::vector<StageReport> reports;

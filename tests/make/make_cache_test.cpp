@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Batches of `relief make` leave unchanged assets as they are.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tools/workplace.h"
+
+namespace relief::tools {
+namespace {
+
+using test::ProgramResult;
+using test::Workplace;
+using testing::HasSubstr;
+using testing::Not;
+
+class MakeBatch : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::filesystem::create_directory(workplace / "in");
+        for (const char* name : {"in/a.obj", "in/b.obj"})
+            workplace.write_square(name);
+        first = run();
+        ASSERT_EQ(first.exit_code, 0) << first.error;
+    }
+
+    [[nodiscard]] ProgramResult run(const std::string& more = "") const {
+        return workplace.run(
+            "relief make in/a.obj in/b.obj -o out/ --size 32 "
+            "--padding 2 --occlusion-rays 2" +
+            more);
+    }
+
+    Workplace workplace;
+    ProgramResult first;
+};
+
+TEST_F(MakeBatch, MakesOnlyWhatChanged) {
+    EXPECT_THAT(first.out, Not(HasSubstr("unchanged")));
+    const ProgramResult second = run();
+    EXPECT_EQ(second.exit_code, 0);
+    EXPECT_THAT(second.out, HasSubstr("out/a.glb: unchanged"));
+    EXPECT_THAT(second.out, HasSubstr("out/b.glb: unchanged"));
+    // An input.
+    workplace.write("in/a.obj", workplace.read("in/a.obj") + "# changed\n");
+    const ProgramResult third = run();
+    EXPECT_THAT(third.out, Not(HasSubstr("out/a.glb: unchanged")));
+    EXPECT_THAT(third.out, HasSubstr("out/b.glb: unchanged"));
+    // An output.
+    std::filesystem::remove(workplace / "out/b.glb");
+    EXPECT_THAT(run().out, Not(HasSubstr("out/b.glb: unchanged")));
+    EXPECT_TRUE(std::filesystem::exists(workplace / "out/b.glb"));
+}
+
+TEST_F(MakeBatch, MakesAllAfterAChangeOfOptionsAndByForce) {
+    EXPECT_THAT(run(" --crease 30").out, Not(HasSubstr("unchanged")));
+    EXPECT_THAT(run(" --crease 30").out, HasSubstr("unchanged"));
+    EXPECT_THAT(run(" --crease 30 --force").out, Not(HasSubstr("unchanged")));
+}
+
+TEST_F(MakeBatch, IgnoresADamagedFile) {
+    workplace.write("out/relief-make.json", "{");
+    const ProgramResult result = run();
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, Not(HasSubstr("unchanged")));
+    EXPECT_THAT(run().out, HasSubstr("unchanged"));
+}
+
+TEST(MakeCommand, ExplainsThePlanAndMakesNothing) {
+    const Workplace workplace;
+    const ProgramResult result =
+        workplace.run("relief make data/urn-high.ply out/none/a.glb --explain --lods 2");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(workplace.outputs(), "");
+    for (const char* text : {"decimate", "26800 triangles to 5000", "2 levels of detail", "about"})
+        EXPECT_THAT(result.out, HasSubstr(text));
+}
+
+}  // namespace
+}  // namespace relief::tools

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tests: tests/make/make_cache_test.cpp.
+#include "make_cache.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+
+#include "common/command.h"
+#include "files.h"
+
+namespace relief::tools {
+namespace {
+
+/// Returns the hash of a file's bytes; "missing" for a file that cannot be
+/// read.
+std::string hash_of(const std::filesystem::path& file) {
+    try {
+        const relief::detail::FileContents contents(file);
+        std::uint64_t hash = 0xCBF29CE484222325ULL;
+        for (const char byte : contents.text())
+            hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001B3ULL;
+        return fmt::format("{:016x}", hash);
+    } catch (const FileError&) {
+        return "missing";
+    }
+}
+
+Json hashes_of(const std::vector<std::filesystem::path>& files) {
+    Json hashes = Json::object();
+    for (const std::filesystem::path& file : files)
+        hashes[file.string()] = hash_of(file);
+    return hashes;
+}
+
+/// Returns whether files are as they were.
+bool are_unchanged(const Json& hashes) {
+    if (!hashes.is_object() || hashes.empty()) return false;
+    for (const auto& [file, hash] : hashes.items()) {
+        if (hash != hash_of(file)) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+MakeCache::MakeCache(const std::filesystem::path& folder) : file_(folder / "relief-make.json") {
+    if (!std::filesystem::exists(file_)) return;
+    const Json stored = Json::parse(relief::detail::read_file(file_), nullptr, false);
+    if (!stored.is_object() || stored.value("version", "") != version()) return;
+    const auto assets = stored.find("assets");
+    if (assets != stored.end() && assets->is_object()) assets_ = *assets;
+}
+
+bool MakeCache::is_current(const std::filesystem::path& asset, const std::string& options) const {
+    const auto entry = assets_.find(asset.filename().string());
+    if (entry == assets_.end() || !entry->is_object()) return false;
+    return entry->value("options", "") == options && entry->contains("inputs") &&
+           entry->contains("outputs") && are_unchanged((*entry)["outputs"]) &&
+           are_unchanged((*entry)["inputs"]);
+}
+
+void MakeCache::add(const std::filesystem::path& asset, const std::string& options,
+                    const std::vector<std::filesystem::path>& inputs,
+                    const std::vector<std::filesystem::path>& outputs) {
+    assets_[asset.filename().string()] = {
+        {"options", options}, {"inputs", hashes_of(inputs)}, {"outputs", hashes_of(outputs)}};
+}
+
+void MakeCache::write() const {
+    write_json(file_, {{"tool", "relief make"}, {"version", version()}, {"assets", assets_}});
+}
+
+}  // namespace relief::tools
