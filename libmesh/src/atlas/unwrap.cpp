@@ -102,13 +102,24 @@ std::vector<LatticePoint> lattice_points(const FlatChart& chart, const Placement
     return points;
 }
 
-/// Charts in their places on the lattice.
-struct Atlas {
-    std::vector<FlatChart> charts;
-    std::vector<int> tile;                          ///< Of each chart.
-    std::vector<std::vector<LatticePoint>> points;  ///< In the tile.
-    double texels_per_unit = 0.0;                   ///< Of the surface.
+/// A chart in its place on the lattice.
+struct PlacedChart {
+    std::vector<std::uint32_t> faces;
+    std::vector<glm::uvec3> vertices;  ///< For each of `faces`.
+    std::vector<LatticePoint> points;  ///< In the tile, for each vertex.
+    int tile = 0;
 };
+
+/// Moves what the coordinates need out of charts: large meshes leave little memory for the rest.
+std::vector<PlacedChart> placed_charts(std::vector<FlatChart> charts,
+                                       std::vector<std::vector<LatticePoint>> points,
+                                       std::span<const int> tiles) {
+    std::vector<PlacedChart> result;
+    for (std::size_t i = 0; i < charts.size(); ++i)
+        result.push_back({std::move(charts[i].mesh.faces), std::move(charts[i].mesh.vertices),
+                          std::move(points[i]), tiles[i]});
+    return result;
+}
 
 /// Scales charts by the mean density of their triangles.
 class DensityScale {
@@ -139,28 +150,23 @@ class DensityScale {
 
 /// Packs charts, and divides those that overlap themselves once they are rounded at their place,
 /// until there is none.
-Atlas packed_atlas(const AtlasSurface& surface, std::vector<FlatChart> charts,
-                   ChartMembers& members, const FlatnessLimits& limits, const DensityScale& density,
-                   const Layout& layout) {
-    Atlas atlas;
+std::vector<PlacedChart> packed_atlas(const AtlasSurface& surface, std::vector<FlatChart> charts,
+                                      ChartMembers& members, const FlatnessLimits& limits,
+                                      const DensityScale& density, const Layout& layout) {
     for (;;) {
-        TiledPacking tiled = packed_into_tiles(charts, layout.packing, layout.tiles);
+        const TiledPacking tiled = packed_into_tiles(charts, layout.packing, layout.tiles);
         const Packing& packing = tiled.packing;
-        atlas.points.clear();
+        std::vector<std::vector<LatticePoint>> points;
         std::vector<std::optional<std::uint32_t>> problems;
         for (std::size_t i = 0; i < charts.size(); ++i) {
-            atlas.points.push_back(
+            points.push_back(
                 lattice_points(charts[i], packing.placements[i], packing.texels_per_unit, layout));
-            widen_single_triangle(charts[i], atlas.points[i]);
-            problems.push_back(overlap_in(charts[i].mesh, atlas.points[i]));
+            widen_single_triangle(charts[i], points[i]);
+            problems.push_back(overlap_in(charts[i].mesh, points[i]));
         }
         if (std::none_of(problems.begin(), problems.end(),
-                         [](const auto& problem) { return problem.has_value(); })) {
-            atlas.charts = std::move(charts);
-            atlas.tile = std::move(tiled.tile);
-            atlas.texels_per_unit = packing.texels_per_unit;
-            return atlas;
-        }
+                         [](const auto& problem) { return problem.has_value(); }))
+            return placed_charts(std::move(charts), std::move(points), tiled.tile);
         std::vector<FlatChart> next;
         for (std::size_t i = 0; i < charts.size(); ++i) {
             if (!problems[i]) {
@@ -185,7 +191,8 @@ auto during(const char* name, const Work& work) {
 }
 
 /// Divides a surface into charts, and packs them.
-Atlas new_atlas(const AtlasSurface& surface, const UnwrapOptions& options, Layout layout) {
+std::vector<PlacedChart> new_atlas(const AtlasSurface& surface, const UnwrapOptions& options,
+                                   Layout layout) {
     Segmentation segmentation = during("dividing into charts", [&] {
         Segmentation merged = divided(surface, ChartLimits{});
         straighten_borders(surface, merged);
@@ -221,14 +228,15 @@ Atlas new_atlas(const AtlasSurface& surface, const UnwrapOptions& options, Layou
 }
 
 /// Packs existing charts, and reports those that overlap themselves.
-Atlas repacked_atlas(std::vector<FlatChart> charts, const Layout& layout, Report& report) {
-    Atlas atlas;
-    TiledPacking tiled = packed_into_tiles(charts, layout.packing, layout.tiles);
+std::vector<PlacedChart> repacked_atlas(std::vector<FlatChart> charts, const Layout& layout,
+                                        Report& report) {
+    std::vector<std::vector<LatticePoint>> all_points;
+    const TiledPacking tiled = packed_into_tiles(charts, layout.packing, layout.tiles);
     const Packing& packing = tiled.packing;
     for (std::size_t i = 0; i < charts.size(); ++i) {
         std::vector<LatticePoint> points =
             lattice_points(charts[i], packing.placements[i], packing.texels_per_unit, layout);
-        atlas.points.push_back(points);
+        all_points.push_back(points);
         // Mirrored charts have their own finding.
         const auto reflect = [](LatticePoint p) { return LatticePoint(-p.x, p.y); };
         if (!overlap_in(charts[i].mesh, points)) continue;
@@ -237,10 +245,7 @@ Atlas repacked_atlas(std::vector<FlatChart> charts, const Layout& layout, Report
             report.add("chart with overlapping or inverted triangles", "chart", i,
                        "keeps its shape");
     }
-    atlas.charts = std::move(charts);
-    atlas.tile = std::move(tiled.tile);
-    atlas.texels_per_unit = packing.texels_per_unit;
-    return atlas;
+    return placed_charts(std::move(charts), std::move(all_points), tiled.tile);
 }
 
 /// Texture coordinates from lattice coordinates: v points down, and tiles are numbered to the right
@@ -253,8 +258,8 @@ glm::vec2 texcoord_of(const LatticePoint& point, int tile, double lattice_size) 
 }
 
 /// Fills the coordinates and charts of triangles. \return the charts of faces
-FaceCharts fill_corners(const AtlasSurface& surface, const Atlas& atlas, double lattice_size,
-                        Unwrapped& result) {
+FaceCharts fill_corners(const AtlasSurface& surface, std::span<const PlacedChart> atlas,
+                        double lattice_size, Unwrapped& result) {
     const std::size_t triangle_count = surface.face_of_triangle.size();
     result.corner_texcoords.assign(3 * triangle_count, glm::vec2(0.0F));
     result.chart.assign(triangle_count, std::nullopt);
@@ -262,9 +267,9 @@ FaceCharts fill_corners(const AtlasSurface& surface, const Atlas& atlas, double 
         std::uint32_t chart = 0, index = 0;
     };
     std::vector<Place> places(surface.faces.size());
-    FaceCharts charts{std::vector<std::uint32_t>(surface.faces.size()), atlas.charts.size()};
-    for (std::uint32_t c = 0; c < atlas.charts.size(); ++c) {
-        const std::vector<std::uint32_t>& faces = atlas.charts[c].mesh.faces;
+    FaceCharts charts{std::vector<std::uint32_t>(surface.faces.size()), atlas.size()};
+    for (std::uint32_t c = 0; c < atlas.size(); ++c) {
+        const std::vector<std::uint32_t>& faces = atlas[c].faces;
         for (std::uint32_t i = 0; i < faces.size(); ++i) {
             places[faces[i]] = {c, i};
             charts.chart[faces[i]] = c;
@@ -275,12 +280,12 @@ FaceCharts fill_corners(const AtlasSurface& surface, const Atlas& atlas, double 
         if (face == no_face) continue;
         const Place& place = places[face];
         result.chart[t] = place.chart;
-        const glm::uvec3& v = atlas.charts[place.chart].mesh.vertices[place.index];
+        const PlacedChart& chart = atlas[place.chart];
+        const glm::uvec3& v = chart.vertices[place.index];
         for (std::uint32_t i = 0; i < 3; ++i) {
             const std::uint32_t corner = (i + surface.first_corner[t]) % 3;
-            result.corner_texcoords[3 * t + corner] =
-                texcoord_of(atlas.points[place.chart][v[static_cast<glm::length_t>(i)]],
-                            atlas.tile[place.chart], lattice_size);
+            result.corner_texcoords[3 * t + corner] = texcoord_of(
+                chart.points[v[static_cast<glm::length_t>(i)]], chart.tile, lattice_size);
         }
     }
     return charts;
@@ -325,13 +330,13 @@ Unwrapped unwrap(const Mesh& mesh, const UnwrapOptions& options, Report& report)
     if (options.repack) {
         if (options.texels_per_unit)
             layout.packing.texels_per_unit = *options.texels_per_unit * surface.unit;
-        const Atlas atlas = repacked_atlas(
+        const std::vector<PlacedChart> atlas = repacked_atlas(
             existing_charts(surface, mesh, options.size, options.unmirror, report), layout, report);
         const FaceCharts face_charts = fill_corners(surface, atlas, layout.lattice_size, result);
         result.stats = stats_of(surface, result.corner_texcoords, face_charts, options);
         return result;
     }
-    Atlas atlas = new_atlas(surface, options, layout);
+    std::vector<PlacedChart> atlas = new_atlas(surface, options, layout);
     const ProgressStage measuring("measuring charts");
     const FaceCharts face_charts = fill_corners(surface, atlas, layout.lattice_size, result);
     atlas = {};  // Measuring needs memory too.
