@@ -268,7 +268,8 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
     add_switch(app, "--loss", command.request.measures_loss,
                "Measure what was lost: differences of pictures (FLIP) with three lights, degrees "
                "between normals and pixels between silhouettes, in 12 views. Needs OpenGL, also "
-               "without a GPU.")
+               "without a GPU. With --report NAME.html, the report is a page with pictures of the "
+               "source and the asset, also without --loss.")
         .group(output);
     add_switch(app, "--force", command.force,
                "In a folder, make all assets again. Otherwise those whose options and files are "
