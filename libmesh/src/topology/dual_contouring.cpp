@@ -24,11 +24,6 @@ namespace {
 // The corner of a cell with the offsets x, y, z has the number x + 2 y + 4 z. The edge along an
 // axis with the offsets u and v along the next two axes has the number 4 axis + u + 2 v.
 
-constexpr std::size_t corner_number(int axis, std::size_t along, std::size_t u, std::size_t v) {
-    const auto a = static_cast<std::size_t>(axis);
-    return (along << a) | (u << (a + 1) % 3) | (v << (a + 2) % 3);
-}
-
 /// The number of the edge along an axis that begins at a corner.
 constexpr std::size_t edge_at(std::size_t corner, std::size_t axis) {
     return 4 * axis + (corner >> (axis + 1) % 3 & 1) + 2 * (corner >> (axis + 2) % 3 & 1);
