@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// BC4 and BC5: encodes and decodes blocks of one or two channels. bc7_blocks.cpp has BC7.
+// BC4 and BC5: encodes and decodes blocks of one or two channels. bc7_blocks.cpp has BC7, and
+// bc1_blocks.cpp BC1 and BC3.
 //
 // A block of a channel has two codes of 8 bits, and 3 bits per texel that select one of 8 values:
 // the codes and 6 values between them, or, in the other order of the codes, the codes, 4 values
@@ -23,6 +24,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "image/color_blocks.h"
 #include "image/normal_coding.h"
 #include "image/texel_loops.h"
 #include "parallel.h"
@@ -728,12 +730,30 @@ std::vector<std::byte> encode_channels(const ImageView& image, BlockFormat forma
 }  // namespace
 
 std::size_t bytes_per_block(BlockFormat format) {
-    return format == BlockFormat::bc4 || format == BlockFormat::bc4_snorm ? 8 : 16;
+    switch (format) {
+        case BlockFormat::bc1:
+        case BlockFormat::bc1a:
+        case BlockFormat::bc4:
+        case BlockFormat::bc4_snorm:
+            return 8;
+        default:
+            return 16;
+    }
 }
 
 int channels_of(BlockFormat format) {
-    if (format == BlockFormat::bc7) return 4;
-    return bytes_per_block(format) == 8 ? 1 : 2;
+    switch (format) {
+        case BlockFormat::bc4:
+        case BlockFormat::bc4_snorm:
+            return 1;
+        case BlockFormat::bc5:
+        case BlockFormat::bc5_snorm:
+            return 2;
+        case BlockFormat::bc1:
+            return 3;
+        default:
+            return 4;
+    }
 }
 
 bool is_signed(BlockFormat format) {
@@ -750,6 +770,7 @@ std::vector<std::byte> encode_blocks(const ImageView& image, BlockFormat format,
                                      BlockQuality quality, Report& report) {
     check_size(image.width, image.height);
     if (format == BlockFormat::bc7) return encode_bc7(image, quality, report);
+    if (channels_of(format) > 2) return encode_color_blocks(image, format, quality, report);
     if (image.channels != channels_of(format)) {
         throw InvalidInput(fmt::format("{} has {} channels, not {}", enum_name(format),
                                        channels_of(format), image.channels));
@@ -782,6 +803,7 @@ Image decode_blocks(std::span<const std::byte> blocks, BlockFormat format, int w
                                        enum_name(format), size, blocks.size()));
     }
     if (format == BlockFormat::bc7) return decode_bc7(blocks, width, height);
+    if (channels_of(format) > 2) return decode_color_blocks(blocks, format, width, height);
     const auto channels = static_cast<std::size_t>(channels_of(format));
     const auto columns = static_cast<std::size_t>(width);
     const auto rows = static_cast<std::size_t>(height);

@@ -22,6 +22,8 @@ constexpr std::array all_kinds = {
     MapKindInfo{MapKind::roughness, "roughness", "a roughness map"},
     MapKindInfo{MapKind::packed, "packed maps", "a map of occlusion, roughness and metalness"},
     MapKindInfo{MapKind::error, "errors of normals", "a map of errors"},
+    MapKindInfo{MapKind::metalness, "metalness", "a map of metalness"},
+    MapKindInfo{MapKind::emission, "emission", "a map of emission"},
 };
 
 static_assert([] {

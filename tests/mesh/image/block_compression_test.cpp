@@ -604,5 +604,109 @@ TEST(Bc7Encoder, BetterQualitiesHaveSmallerErrors) {
               0.25 * squared_error(masks, BlockQuality::fast));
 }
 
+// BC1 and BC3.
+
+TEST(Bc1Decoder, OrderOfTheEndpointsSelectsThirdsOrTransparentBlack) {
+    // Red (31, 0, 0) and blue (0, 0, 31), and the indices 0 to 3.
+    const auto block = [](unsigned first, unsigned second) {
+        std::vector<Bits> fields = {{first, 16}, {second, 16}};
+        for (unsigned t = 0; t < 16; ++t)
+            fields.push_back({t % 4, 2});
+        return block_of(8, fields);
+    };
+    const auto first_four = [](const Blocks& blocks, BlockFormat format, std::size_t channels) {
+        const auto samples = samples_of<std::uint8_t>(decode_blocks(blocks, format, 4, 4));
+        return std::vector<std::uint8_t>(samples.begin(),
+                                         samples.begin() + static_cast<long>(4 * channels));
+    };
+    EXPECT_THAT(first_four(block(0xF800, 0x001F), BlockFormat::bc1, 3),
+                ElementsAre(255, 0, 0, 0, 0, 255, 170, 0, 85, 85, 0, 170));
+    EXPECT_THAT(first_four(block(0x001F, 0xF800), BlockFormat::bc1, 3),
+                ElementsAre(0, 0, 255, 255, 0, 0, 127, 0, 127, 0, 0, 0));
+    EXPECT_THAT(first_four(block(0x001F, 0xF800), BlockFormat::bc1a, 4),
+                ElementsAre(0, 0, 255, 255, 255, 0, 0, 255, 127, 0, 127, 255, 0, 0, 0, 0));
+    // In BC3 the order has no meaning.
+    Blocks bc3 = bc4_block(255, 255);
+    const Blocks colors = block(0x001F, 0xF800);
+    bc3.insert(bc3.end(), colors.begin(), colors.end());
+    EXPECT_EQ(samples_of<std::uint8_t>(decode_blocks(bc3, BlockFormat::bc3, 4, 4))[8], 85);
+}
+
+TEST(Bc1Encoder, SingleColorsHaveAnErrorOfAtMostTwoCodes) {
+    for (const BlockQuality quality : all_qualities) {
+        for (int code = 0; code < 256; code += 5) {
+            const auto level = static_cast<std::uint8_t>(code);
+            std::vector<std::uint8_t> samples;
+            for (int t = 0; t < 16; ++t)
+                samples.insert(samples.end(),
+                               {level, static_cast<std::uint8_t>(255 - code), level});
+            const Image image = image_of(4, 4, 3, ColorSpace::data, samples);
+            const Image decoded = decode_blocks(encode_blocks(image, BlockFormat::bc1, quality),
+                                                BlockFormat::bc1, 4, 4);
+            const auto result = samples_of<std::uint8_t>(decoded);
+            for (std::size_t i = 0; i < result.size(); ++i)
+                EXPECT_NEAR(result[i], samples[i], 2) << code;
+        }
+    }
+}
+
+/// Colors with texture, and alpha that is 0 in some texels.
+Image colors_with_alpha(int width, int height) {
+    Image image = make_image(width, height, 4, 8, ColorSpace::srgb);
+    const auto samples = image.as<std::uint8_t>();
+    std::uint32_t state = 3;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        state = 1664525U * state + 1013904223U;
+        const std::size_t texel = i / 4;
+        const auto base = static_cast<std::uint32_t>(60 + 3 * (texel % 40) + 10 * (i % 4));
+        samples[i] = static_cast<std::uint8_t>(i % 4 == 3 ? (texel % 7 == 0 ? 0 : 255)
+                                                          : base + (state >> 28U));
+    }
+    return image;
+}
+
+double squared_error(const Image& image, BlockFormat format, BlockQuality quality) {
+    const Image decoded =
+        decode_blocks(encode_blocks(image, format, quality), format, image.width, image.height);
+    const auto a = samples_of<std::uint8_t>(image);
+    const auto b = samples_of<std::uint8_t>(decoded);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return sum / static_cast<double>(a.size());
+}
+
+TEST(Bc1Encoder, BetterQualityHasNoLargerError) {
+    Image image = colors_with_alpha(37, 22);
+    const double bc3 = squared_error(image, BlockFormat::bc3, BlockQuality::normal);
+    EXPECT_LE(squared_error(image, BlockFormat::bc3, BlockQuality::best), bc3);
+    EXPECT_LT(bc3, squared_error(image, BlockFormat::bc3, BlockQuality::fast));
+    drop_alpha(image);
+    const double bc1 = squared_error(image, BlockFormat::bc1, BlockQuality::normal);
+    EXPECT_LE(squared_error(image, BlockFormat::bc1, BlockQuality::best), bc1);
+    EXPECT_LT(bc1, squared_error(image, BlockFormat::bc1, BlockQuality::fast));
+    EXPECT_LT(bc1, 40.0);
+    EXPECT_LT(squared_error(image, BlockFormat::bc7, BlockQuality::normal), bc1);
+}
+
+TEST(Bc1Encoder, TransparentTexelsStayTransparent) {
+    const Image image = colors_with_alpha(20, 12);
+    for (const BlockQuality quality : all_qualities) {
+        const Image decoded = decode_blocks(encode_blocks(image, BlockFormat::bc1a, quality),
+                                            BlockFormat::bc1a, 20, 12);
+        const auto a = samples_of<std::uint8_t>(image);
+        const auto b = samples_of<std::uint8_t>(decoded);
+        for (std::size_t i = 3; i < a.size(); i += 4)
+            ASSERT_EQ(a[i], b[i]) << i;
+    }
+}
+
+TEST(Bc1Encoder, OtherChannelsAreRefused) {
+    const Image image = colors_with_alpha(4, 4);
+    EXPECT_EQ(message_of<InvalidInput>(
+                  [&] { encode_blocks(image, BlockFormat::bc1, BlockQuality::fast); }),
+              "bc1 has 3 channels, not 4");
+}
+
 }  // namespace
 }  // namespace relief

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The block decoder against that of OpenGL (Mesa) on random blocks of BC4, BC5 and all modes of
-// BC7.
+// The block decoder against that of OpenGL (Mesa) on random blocks of BC1, BC3, BC4, BC5 and all
+// modes of BC7.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -115,6 +115,33 @@ TEST_P(BlockDecoding, Bc4AndBc5) {
         EXPECT_LT(worst_of_codes, 1e-4) << enum_name(each.format);
         EXPECT_LT(worst, 2.0 * code) << enum_name(each.format);
         EXPECT_LT(sum / static_cast<double>(samples.size()), 0.5 * code) << enum_name(each.format);
+    }
+}
+
+TEST_P(BlockDecoding, Bc1AndBc3) {
+    if (!has_extension("GL_EXT_texture_compression_s3tc"))
+        GTEST_SKIP() << "this OpenGL does not decode BC1";
+    struct Case {
+        BlockFormat format;
+        GLenum internal;
+    };
+    // GL_COMPRESSED_RGB_S3TC_DXT1_EXT, RGBA_S3TC_DXT1, RGBA_S3TC_DXT5.
+    for (const Case& each : {Case{BlockFormat::bc1, 0x83F0}, Case{BlockFormat::bc1a, 0x83F1},
+                             Case{BlockFormat::bc3, 0x83F3}}) {
+        const auto blocks = random_blocks(each.format);
+        const auto count = static_cast<std::size_t>(channels_of(each.format));
+        const auto expected =
+            decoded_by_gl(blocks, each.internal, count == 3 ? GL_RGB : GL_RGBA, count);
+        const auto image = decode_blocks(blocks, each.format, texels_across, texels_across);
+        const auto samples = image.as<std::uint8_t>();
+        ASSERT_EQ(samples.size(), expected.size());
+        // Decoders round the colors between the endpoints differently.
+        double worst = 0.0;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const double code = 255.0 * static_cast<double>(expected[i]);
+            worst = std::max(worst, std::abs(code - static_cast<double>(samples[i])));
+        }
+        EXPECT_LT(worst, 2.01) << enum_name(each.format);
     }
 }
 

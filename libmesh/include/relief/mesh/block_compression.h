@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Block compression for GPUs: BC4, BC5 and BC7, encoded from exact data and decoded.
+/// Block compression for GPUs: BC1, BC3, BC4, BC5 and BC7, encoded from exact data and decoded.
 ///
-/// A block stores 4 x 4 texels in 8 bytes (BC4) or 16 bytes (BC5, BC7). Files: texture_file.h.
+/// A block stores 4 x 4 texels in 8 bytes (BC1, BC4) or 16 bytes (BC3, BC5, BC7). Files:
+/// texture_file.h. Maps with their mip levels: map_texture.h.
 /// Tests: tests/mesh/image/block_compression_test.cpp.
 #pragma once
 
@@ -27,6 +28,9 @@ enum class BlockFormat {
     bc5,        ///< Two channels, each as in bc4: for x and y of normals.
     bc5_snorm,  ///< Two channels, each as in bc4_snorm: flat is exactly flat.
     bc7,        ///< Three or four channels of colors, or of masks that belong together.
+    bc1,        ///< Three channels: two colors of 16 bits per block, and two between them.
+    bc1a,       ///< The same with alpha that is 0 or 1.
+    bc3,        ///< Four channels: colors as in bc1, and alpha as in bc4.
 };
 
 template <>
@@ -35,7 +39,10 @@ inline constexpr auto enum_names<BlockFormat> =
                                           {"bc4-snorm", BlockFormat::bc4_snorm},
                                           {"bc5", BlockFormat::bc5},
                                           {"bc5-snorm", BlockFormat::bc5_snorm},
-                                          {"bc7", BlockFormat::bc7}});
+                                          {"bc7", BlockFormat::bc7},
+                                          {"bc1", BlockFormat::bc1},
+                                          {"bc1a", BlockFormat::bc1a},
+                                          {"bc3", BlockFormat::bc3}});
 
 /// The time that encoding may take. The bytes do not depend on threads or processors.
 enum class BlockQuality {
@@ -51,7 +58,7 @@ inline constexpr auto enum_names<BlockQuality> = std::to_array<EnumName<BlockQua
 /// Returns the bytes of a block: 8 or 16.
 std::size_t bytes_per_block(BlockFormat format);
 
-/// Returns the number of channels that a format stores: 1, 2 or 4.
+/// Returns the number of channels that a format stores: 1 to 4.
 int channels_of(BlockFormat format);
 
 /// Returns whether a format stores values from -1 to 1.
@@ -62,8 +69,10 @@ std::size_t block_data_size(BlockFormat format, int width, int height);
 
 /// Encodes an image.
 ///
-/// \param image  one channel for BC4, two for BC5, three (alpha is 1) or four for BC7; any number
-///         of bits. Signed formats take n from -1 to 1 coded as (n + 1) / 2 in float, and with
+/// \param image  one channel for BC4, two for BC5, three for bc1, three (alpha is 1) or four for
+/// BC7,
+///         bc1a and BC3; any number of bits. bc1a stores an alpha below 0.5 as transparent black.
+///         Signed formats take n from -1 to 1 coded as (n + 1) / 2 in float, and with
 ///         FlatCode::middle in 8 and 16 bits
 /// \param report  counts samples that are not finite, which become 0 (of float images)
 /// \return blocks row by row, row 0 at the top. Values beyond the format's range are clamped. If
@@ -102,7 +111,8 @@ std::vector<std::byte> encode_normal_blocks(const ImageView& normals,
 /// \param blocks  block_data_size() bytes
 /// \return BC4, BC5: 16 bits per sample, rounded from the exact values between the codes; signed
 ///         formats are coded with FlatCode::middle. BC7: four channels of 8 bits, exact; blocks of
-///         the reserved mode are transparent black
+///         the reserved mode are transparent black. BC1, BC3: channels of 8 bits, rounded from the
+///         exact colors between the endpoints; decoders of GPUs may differ by one code
 /// \throws InvalidInput if a size is not positive, or the number of bytes is another one
 ///
 /// Source: [Khronos Data Format].

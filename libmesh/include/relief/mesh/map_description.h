@@ -32,6 +32,8 @@ enum class MapKind {
     roughness,
     packed,  ///< Occlusion, roughness and metalness in the channels of one image.
     error,   ///< The errors of another map.
+    metalness,
+    emission,
 };
 
 template <>
@@ -47,7 +49,9 @@ inline constexpr auto enum_names<MapKind> =
                                       {"color", MapKind::color},
                                       {"roughness", MapKind::roughness},
                                       {"packed", MapKind::packed},
-                                      {"error", MapKind::error}});
+                                      {"error", MapKind::error},
+                                      {"metalness", MapKind::metalness},
+                                      {"emission", MapKind::emission}});
 
 /// The texts for a kind.
 struct MapKindInfo {

@@ -42,29 +42,25 @@ enum class TextureFormat {
     bc5,
     bc5_snorm,
     bc7,
+    bc1,
+    bc1a,
+    bc3,
 };
 
 template <>
-inline constexpr auto enum_names<TextureFormat> =
-    std::to_array<EnumName<TextureFormat>>({{"r8", TextureFormat::r8},
-                                            {"rg8", TextureFormat::rg8},
-                                            {"rgba8", TextureFormat::rgba8},
-                                            {"r16", TextureFormat::r16},
-                                            {"rg16", TextureFormat::rg16},
-                                            {"rgba16", TextureFormat::rgba16},
-                                            {"r16f", TextureFormat::r16f},
-                                            {"rg16f", TextureFormat::rg16f},
-                                            {"rgba16f", TextureFormat::rgba16f},
-                                            {"r32f", TextureFormat::r32f},
-                                            {"rg32f", TextureFormat::rg32f},
-                                            {"rgba32f", TextureFormat::rgba32f},
-                                            {"bc4", TextureFormat::bc4},
-                                            {"bc4-snorm", TextureFormat::bc4_snorm},
-                                            {"bc5", TextureFormat::bc5},
-                                            {"bc5-snorm", TextureFormat::bc5_snorm},
-                                            {"bc7", TextureFormat::bc7}});
+inline constexpr auto enum_names<TextureFormat> = std::to_array<EnumName<TextureFormat>>(
+    {{"r8", TextureFormat::r8},           {"rg8", TextureFormat::rg8},
+     {"rgba8", TextureFormat::rgba8},     {"r16", TextureFormat::r16},
+     {"rg16", TextureFormat::rg16},       {"rgba16", TextureFormat::rgba16},
+     {"r16f", TextureFormat::r16f},       {"rg16f", TextureFormat::rg16f},
+     {"rgba16f", TextureFormat::rgba16f}, {"r32f", TextureFormat::r32f},
+     {"rg32f", TextureFormat::rg32f},     {"rgba32f", TextureFormat::rgba32f},
+     {"bc4", TextureFormat::bc4},         {"bc4-snorm", TextureFormat::bc4_snorm},
+     {"bc5", TextureFormat::bc5},         {"bc5-snorm", TextureFormat::bc5_snorm},
+     {"bc7", TextureFormat::bc7},         {"bc1", TextureFormat::bc1},
+     {"bc1a", TextureFormat::bc1a},       {"bc3", TextureFormat::bc3}});
 
-/// Returns the number of channels of a format: 1, 2 or 4.
+/// Returns the number of channels of a format: 1 to 4.
 int channels_of(TextureFormat format);
 
 /// Returns the block format; absent if texels are stored one by one.
@@ -73,10 +69,13 @@ std::optional<BlockFormat> block_format_of(TextureFormat format);
 /// Returns the bits of the samples of decoded levels: 8, 16 or 32.
 int bits_of(TextureFormat format);
 
+/// Returns whether KTX2 and DDS have a variant of a format whose colors are sRGB-coded.
+bool has_srgb_variant(TextureFormat format);
+
 /// A texture with its mip levels.
 struct GpuTexture {
     TextureFormat format = TextureFormat::rgba8;
-    bool is_srgb = false;  ///< Colors are sRGB-coded: r8, rg8, rgba8 and bc7.
+    bool is_srgb = false;  ///< Colors are sRGB-coded: r8, rg8, rgba8, bc1, bc1a, bc3 and bc7.
     int width = 0;
     int height = 0;
     /// Level 0 is the largest; each further one has half the size, rounded down, but at least 1.

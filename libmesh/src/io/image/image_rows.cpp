@@ -60,8 +60,8 @@ void check_shape(const ImageShape& shape) {
     }
 }
 
-/// Returns OpenImageIO's name for the format of an extension. \throws FileError if relief does not
-/// write it
+/// Returns the name of the format for an extension, which is OpenImageIO's for all but textures.
+/// \throws FileError if relief does not write it
 const char* format_by_extension(const std::filesystem::path& file) {
     const std::string extension = lower_extension(file);
     if (extension == ".png") return "png";
@@ -69,8 +69,11 @@ const char* format_by_extension(const std::filesystem::path& file) {
     if (extension == ".exr") return "openexr";
     if (extension == ".hdr") return "hdr";
     if (extension == ".jpg" || extension == ".jpeg") return "jpeg";
+    if (extension == ".ktx2") return "ktx2";
+    if (extension == ".dds") return "dds";
     throw FileError(
-        file, fmt::format("relief cannot write '{}' images, only .png, .tif, .exr, .hdr and .jpg",
+        file, fmt::format("relief cannot write '{}' images, only .png, .tif, .exr, .hdr, .jpg, "
+                          ".ktx2 and .dds",
                           extension));
 }
 
@@ -299,11 +302,16 @@ ImageRowWriter::ImageRowWriter(const std::filesystem::path& file, const ImageSha
     const char* const format = format_by_extension(file);
     check_writable(format, shape, options);
     check_metadata(metadata);
+    const std::string_view name = format;
+    const bool is_texture = name == "ktx2" || name == "dds";
+    if (is_texture) check_texture_shape(shape, metadata);
     implementation_.reset(new Implementation{FileReplacement(file), {}, nullptr});
     Implementation& self = *implementation_;
     self.plan = {file, self.replacement.written_path(), format, shape, metadata, options};
-    self.sink =
-        std::string_view(format) == "png" ? make_png_sink(self.plan) : make_module_sink(self.plan);
+    if (is_texture)
+        self.sink = make_texture_sink(self.plan);
+    else
+        self.sink = name == "png" ? make_png_sink(self.plan) : make_module_sink(self.plan);
 }
 
 ImageRowWriter::~ImageRowWriter() = default;

@@ -48,7 +48,10 @@ constexpr VulkanFormat vulkan_formats[] = {
     {109, TextureFormat::rgba32f, false},   {139, TextureFormat::bc4, false},
     {140, TextureFormat::bc4_snorm, false}, {141, TextureFormat::bc5, false},
     {142, TextureFormat::bc5_snorm, false}, {145, TextureFormat::bc7, false},
-    {146, TextureFormat::bc7, true}};
+    {146, TextureFormat::bc7, true},        {131, TextureFormat::bc1, false},
+    {132, TextureFormat::bc1, true},        {133, TextureFormat::bc1a, false},
+    {134, TextureFormat::bc1a, true},       {137, TextureFormat::bc3, false},
+    {138, TextureFormat::bc3, true}};
 
 /// "the Vulkan format 131 (BC1)"
 std::string vulkan_name(std::uint32_t number) {
@@ -72,7 +75,7 @@ const VulkanFormat& read_vulkan_format(std::uint32_t number, const std::filesyst
         if (format.number == number) return format;
     }
     throw FileError(name, fmt::format("has {}; of KTX2 files, relief reads R, RG and RGBA of 8, 16 "
-                                      "and 32 bits, BC4, BC5 and BC7",
+                                      "and 32 bits, BC1, BC3, BC4, BC5 and BC7",
                                       vulkan_name(number)));
 }
 
@@ -150,23 +153,39 @@ struct DfdSample {
 };
 
 namespace dfd {
-constexpr std::uint32_t model_rgbsda = 1, model_bc4 = 131, model_bc5 = 132, model_bc7 = 134;
+constexpr std::uint32_t model_rgbsda = 1, model_bc1 = 128, model_bc3 = 130, model_bc4 = 131,
+                        model_bc5 = 132, model_bc7 = 134;
 constexpr std::uint32_t is_linear = 0x10, is_signed = 0x40, is_float = 0x80;
-constexpr std::uint32_t alpha = 15;
+constexpr std::uint32_t alpha = 15, bc1_with_alpha = 1;
 constexpr std::uint32_t minus_one = 0xBF800000, plus_one = 0x3F800000;  // As float.
 }  // namespace dfd
 
 std::uint32_t color_model(TextureFormat format) {
     const std::optional<BlockFormat> blocks = block_format_of(format);
     if (!blocks) return dfd::model_rgbsda;
-    if (*blocks == BlockFormat::bc7) return dfd::model_bc7;
-    return channels_of(*blocks) == 1 ? dfd::model_bc4 : dfd::model_bc5;
+    switch (*blocks) {
+        case BlockFormat::bc7:
+            return dfd::model_bc7;
+        case BlockFormat::bc1:
+        case BlockFormat::bc1a:
+            return dfd::model_bc1;
+        case BlockFormat::bc3:
+            return dfd::model_bc3;
+        default:
+            return channels_of(*blocks) == 1 ? dfd::model_bc4 : dfd::model_bc5;
+    }
 }
 
 std::vector<DfdSample> dfd_samples(const GpuTexture& texture) {
     std::vector<DfdSample> samples;
     const std::optional<BlockFormat> blocks = block_format_of(texture.format);
     if (blocks == BlockFormat::bc7) return {{0, 128, 0, 0, 0xFFFFFFFF}};
+    if (blocks == BlockFormat::bc1) return {{0, 64, 0, 0, 0xFFFFFFFF}};
+    if (blocks == BlockFormat::bc1a) return {{0, 64, dfd::bc1_with_alpha, 0, 0xFFFFFFFF}};
+    if (blocks == BlockFormat::bc3) {
+        return {{0, 64, dfd::alpha | (texture.is_srgb ? dfd::is_linear : 0), 0, 0xFFFFFFFF},
+                {64, 64, 0, 0, 0xFFFFFFFF}};
+    }
     const auto channels = static_cast<std::uint32_t>(channels_of(texture.format));
     if (blocks) {
         const bool has_sign = is_signed(*blocks);

@@ -75,5 +75,11 @@ std::string encode_png(const Image& image, const std::map<std::string, std::stri
 
 std::unique_ptr<RowSink> make_png_sink(const RowSinkPlan& plan);
 std::unique_ptr<RowSink> make_module_sink(const RowSinkPlan& plan);
+std::unique_ptr<RowSink> make_texture_sink(const RowSinkPlan& plan);
+
+/// Checks that a texture can hold a map of the kind that its text entries state.
+/// \throws InvalidInput
+void check_texture_shape(const ImageShape& shape,
+                         const std::map<std::string, std::string>& metadata);
 
 }  // namespace relief::detail

@@ -48,6 +48,9 @@ std::vector<std::byte> load_level(const TextureContainer& container,
 std::vector<std::byte> ktx2_bytes(const GpuTexture& texture, const TextureWriteOptions& options);
 std::vector<std::byte> dds_bytes(const GpuTexture& texture);
 
+/// Reports the text entries of a texture that DDS does not store.
+void report_lost_entries(const GpuTexture& texture, Report& report);
+
 /// The properties of the image of level 0.
 ImageInfo image_info_of(const GpuTexture& header);
 

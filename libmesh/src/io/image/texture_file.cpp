@@ -62,6 +62,10 @@ constexpr FormatTraits all_traits[] = {
     {TextureFormat::bc5, 2, 16, BlockFormat::bc5, false, 83, 0},
     {TextureFormat::bc5_snorm, 2, 16, BlockFormat::bc5_snorm, false, 84, 0},
     {TextureFormat::bc7, 4, 8, BlockFormat::bc7, false, 98, 99},
+    // DXGI does not distinguish both formats of BC1: alpha that is stated as opaque does.
+    {TextureFormat::bc1a, 4, 8, BlockFormat::bc1a, false, 71, 72},
+    {TextureFormat::bc1, 3, 8, BlockFormat::bc1, false, 71, 72},
+    {TextureFormat::bc3, 4, 8, BlockFormat::bc3, false, 77, 78},
 };
 
 const FormatTraits& traits_of(TextureFormat format) {
@@ -195,6 +199,8 @@ constexpr std::uint32_t four_letters = 0x4;
 constexpr std::uint32_t is_complex = 0x8, is_texture = 0x1000, has_mipmaps = 0x400000;
 constexpr std::uint32_t is_cube = 0x200, is_volume = 0x200000;
 constexpr std::uint32_t dimension_2d = 3, misc_cube = 4;
+/// The meaning of alpha: 0 is unknown.
+constexpr std::uint32_t alpha_mask = 7, alpha_is_opaque = 3;
 }  // namespace dds
 
 struct DdsFormat {
@@ -261,6 +267,10 @@ std::optional<BlockFormat> block_format_of(TextureFormat format) {
 
 int bits_of(TextureFormat format) {
     return traits_of(format).bits;
+}
+
+bool has_srgb_variant(TextureFormat format) {
+    return traits_of(format).dxgi_srgb != 0;
 }
 
 std::size_t texture_level_size(TextureFormat format, int width, int height) {
@@ -343,6 +353,10 @@ std::optional<TextureContainer> detail::open_dds(Bytes bytes, const std::filesys
     TextureContainer container;
     container.header.format = format->format;
     container.header.is_srgb = format->is_srgb;
+    const bool is_opaque =
+        is_dx10 && (number(dds_header_bytes + 16) & dds::alpha_mask) == dds::alpha_is_opaque;
+    if (format->format == TextureFormat::bc1a && is_opaque)
+        container.header.format = TextureFormat::bc1;
     container.header.width = static_cast<int>(width);
     container.header.height = static_cast<int>(height);
     require_image_fits(image_info_of(container.header), name);
@@ -401,7 +415,7 @@ std::vector<std::byte> detail::dds_bytes(const GpuTexture& texture) {
     put(dds::dimension_2d);
     put(0);
     put(1);  // Textures in the array.
-    put(0);  // Alpha of unknown meaning.
+    put(texture.format == TextureFormat::bc1 ? dds::alpha_is_opaque : 0);
     for (const std::vector<std::byte>& level : texture.levels)
         bytes.insert(bytes.end(), level.begin(), level.end());
     return bytes;
@@ -427,7 +441,11 @@ void write_texture(const std::filesystem::path& file, const GpuTexture& texture,
     const std::vector<std::byte> bytes =
         extension == ".dds" ? dds_bytes(texture) : ktx2_bytes(texture, options);
     replace_file(file, bytes);
-    if (extension != ".dds" || texture.metadata.empty()) return;
+    if (extension == ".dds") report_lost_entries(texture, report);
+}
+
+void detail::report_lost_entries(const GpuTexture& texture, Report& report) {
+    if (texture.metadata.empty()) return;
     std::string entries;
     for (const auto& [key, text] : texture.metadata)
         entries += fmt::format("{}{} '{}'", entries.empty() ? "" : ", ", key, text);

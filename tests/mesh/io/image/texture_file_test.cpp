@@ -163,6 +163,68 @@ TEST(Ktx2File, TheDescriptorsOfOtherFormats) {
     EXPECT_EQ(number(bytes, 152 + 40), 0x7FFFFFFFU);
 }
 
+TEST(Ktx2File, DescriptorsOfBc1AndBc3) {
+    GpuTexture colors = texture_of(TextureFormat::bc3);
+    colors.is_srgb = true;
+    write_texture(temporary("bc3.ktx2"), colors);
+    auto bytes = bytes_of(temporary("bc3.ktx2"));
+    EXPECT_EQ(number(bytes, 12), 138U);                                   // BC3_SRGB_BLOCK
+    EXPECT_EQ(number(bytes, 152 + 12), 130U | 1 << 8 | 2 << 16);          // BC3, BT.709, sRGB.
+    EXPECT_EQ(number(bytes, 152 + 28), 0U | 63 << 16 | 0x1FU << 24U);     // Alpha is linear.
+    EXPECT_EQ(number(bytes, 152 + 28 + 16), 64U | 63 << 16 | 0U << 24U);  // Color.
+
+    write_texture(temporary("bc1.ktx2"), texture_of(TextureFormat::bc1));
+    bytes = bytes_of(temporary("bc1.ktx2"));
+    EXPECT_EQ(number(bytes, 12), 131U);  // BC1_RGB_UNORM_BLOCK
+    EXPECT_EQ(number(bytes, 152 + 12), 128U | 1 << 8 | 1 << 16);
+    EXPECT_EQ(number(bytes, 152 + 16), 0x0303U);
+    EXPECT_EQ(number(bytes, 152 + 20), 8U);
+    EXPECT_EQ(number(bytes, 152 + 28), 63U << 16U);
+
+    write_texture(temporary("bc1a.ktx2"), texture_of(TextureFormat::bc1a));
+    bytes = bytes_of(temporary("bc1a.ktx2"));
+    EXPECT_EQ(number(bytes, 12), 133U);                          // BC1_RGBA_UNORM_BLOCK
+    EXPECT_EQ(number(bytes, 152 + 28), 63U << 16U | 1U << 24U);  // With alpha.
+}
+
+TEST(Ktx2File, DescriptorOfBc3ThatContradictsTheFormatIsRefused) {
+    GpuTexture colors = texture_of(TextureFormat::bc3);
+    colors.is_srgb = true;
+    write_texture(temporary("bc3.ktx2"), colors);
+    auto bytes = bytes_of(temporary("bc3.ktx2"));
+    const std::size_t descriptor = number(bytes, 48);
+    const auto error = [&](std::size_t offset, unsigned char value) {
+        auto changed = bytes;
+        changed[offset] = static_cast<std::byte>(value);
+        return message_of<FileError>(
+            [&] { read_texture(std::span<const std::byte>(changed), "x.ktx2"); });
+    };
+    EXPECT_THAT(error(descriptor + 12, 128), HasSubstr("(BC3) by another color model"));
+    EXPECT_THAT(error(descriptor + 14, 1), HasSubstr("(BC3) by another transfer function"));
+    EXPECT_THAT(error(descriptor + 20, 8), HasSubstr("(BC3) by blocks of another size"));
+    EXPECT_THAT(error(12, 132), HasSubstr("contradicts the Vulkan format 132 (BC1)"));
+}
+
+TEST(DdsFile, FormatsOfBc1AndBc3) {
+    struct Case {
+        TextureFormat format;
+        bool is_srgb;
+        std::uint32_t dxgi;
+    };
+    for (const Case& each :
+         {Case{TextureFormat::bc1, false, 71}, Case{TextureFormat::bc1, true, 72},
+          Case{TextureFormat::bc1a, true, 72}, Case{TextureFormat::bc3, true, 78},
+          Case{TextureFormat::bc7, true, 99}}) {
+        GpuTexture texture = texture_of(each.format);
+        texture.is_srgb = each.is_srgb;
+        write_texture(temporary("color.dds"), texture);
+        EXPECT_EQ(number(bytes_of(temporary("color.dds")), 128), each.dxgi);
+        const GpuTexture read = read_texture(temporary("color.dds"));
+        EXPECT_EQ(read.format, each.format) << enum_name(each.format);
+        EXPECT_EQ(read.is_srgb, each.is_srgb) << enum_name(each.format);
+    }
+}
+
 TEST(Ktx2File, ADescriptorThatContradictsTheFormatIsRefused) {
     write_texture(temporary("bc5.ktx2"), texture_of(TextureFormat::bc5));
     const auto bytes = bytes_of(temporary("bc5.ktx2"));
@@ -324,7 +386,7 @@ std::string damaged(std::vector<std::byte> bytes,
 TEST(DamagedTextures, Ktx2HeadersAreRefused) {
     write_texture(temporary("good.ktx2"), texture_of(TextureFormat::bc5), {.zstd_level = 3});
     const auto bytes = bytes_of(temporary("good.ktx2"));
-    EXPECT_THAT(damaged(bytes, {{12, 131}}), HasSubstr("x: has the Vulkan format 131 (BC1); of"));
+    EXPECT_THAT(damaged(bytes, {{12, 135}}), HasSubstr("x: has the Vulkan format 135 (BC2); of"));
     EXPECT_THAT(damaged(bytes, {{12, 0}}), HasSubstr("the Vulkan format 0 (Basis Universal)"));
     EXPECT_EQ(damaged(bytes, {{20, 0}}), "x: announces 0 x 3 texels");
     EXPECT_EQ(damaged(bytes, {{20, 0x80000000}}), "x: announces 2147483648 x 3 texels");
