@@ -39,6 +39,7 @@ void check(const BumpAccuracyRequest& request, bool slope_moments, bool half) {
 
 /// The bit depths that --max-error can choose from.
 std::vector<int> available_depths(const BumpRequest& request, const Job& job) {
+    if (is_texture(job.output)) return {32};
     if (request.output.bits) return {*request.output.bits};
     std::vector<int> depths = depths_of(job.output);
     // Options for codes have no effect on floats.
@@ -309,6 +310,10 @@ BumpFileFormat file_format_of(const BumpRequest& request, const std::filesystem:
     format.write = write_options_of(request.output, output);
     format.xy_only = request.xy_only;
     format.alpha = request.alpha;
+    if (is_texture(output) && (request.xy_only || request.alpha != MapAlpha::none)) {
+        throw UsageError("--xy, --alpha: have no effect on textures",
+                         "relief-bake convert --format chooses their channels");
+    }
     if (!request.slope_moments) {
         format.normals = format_of(request.output, output);
         return format;

@@ -256,7 +256,9 @@ Summary summary_of(const Job& job, const BumpRequest& request, const BumpConvers
                  {"wrap", name_of(*bump.wrap)},
                  {"seams", std::move(seams)}});
     add_accuracy(summary, conversion.accuracy, request.accuracy.bound.statistic());
-    summary.add("format", format_text(conversion.format),
+    const char* const stored =
+        is_texture(job.output) ? ", stored as a texture with all mip levels" : "";
+    summary.add("format", format_text(conversion.format) + stored,
                 {{"content", has_moments ? "slope moments" : "normals"},
                  {"xy_only", conversion.format.xy_only},
                  {"alpha", enum_name(conversion.format.alpha)},

@@ -20,7 +20,8 @@ namespace {
 /// The name of an output file in a folder: the extension changes only if it cannot store normals.
 std::filesystem::path name_in_folder(const std::filesystem::path& input) {
     std::filesystem::path name = input.filename();
-    return depths_of(name).empty() ? name.replace_extension(".png") : name;
+    const bool is_kept = !depths_of(name).empty() && !is_texture(name);
+    return is_kept ? name : name.replace_extension(".png");
 }
 
 /// Checks everything that the command line shows before any file is read.
@@ -94,22 +95,42 @@ std::string describe_zero_code(const NormalMapFormat& format) {
     std::string problem = "the format cannot store a normal map";
     if (extension == ".jpg" || extension == ".jpeg") problem = "JPEG compression distorts normals";
     if (extension == ".hdr") problem = "HDR stores normals with only 8 bits and without a sign";
-    throw UsageError(output.string() + ": " + problem, "use .png, .tif or .exr");
+    throw UsageError(output.string() + ": " + problem, "use .png, .tif, .exr, .ktx2 or .dds");
+}
+
+/// Textures are encoded from exact normals.
+NormalMapFormat texture_input_format(const MapOutputOptions& options,
+                                     const MapOutputDefaults& defaults) {
+    // --for sets the bits and the code of zero of images.
+    const bool sets_codes = !options.engine && (options.bits || options.flat);
+    if (sets_codes || options.dither) {
+        throw UsageError("--bits, --zero-code, --dither: have no effect on textures",
+                         "relief-bake convert --format chooses their format");
+    }
+    return {.bits = 32,
+            .green = options.green.value_or(defaults.green),
+            .flat = FlatCode::half,
+            .dither = Dither::none};
 }
 
 }  // namespace
 
+bool is_texture(const std::filesystem::path& file) {
+    const std::string extension = extension_of(file);
+    return extension == ".ktx2" || extension == ".dds";
+}
+
 Tool relief_bake() {
     return {"relief-bake",
-            "Makes normal maps.",
+            "Makes normal maps and textures.",
             {add_bump_command, add_mesh_command, add_convert_command, add_map_check_command,
-             add_heights_command, add_pack_command}};
+             add_heights_command, add_pack_command, add_textures_command}};
 }
 
 void add_map_files(CLI::App& app, MapFiles& files, const std::string& input,
                    const std::string& details, const std::string& output) {
     add_files(app, "FILE...", files.words.files,
-              fmt::format("IN OUT: the {} to read and the {} to write (.png .tif .exr). "
+              fmt::format("IN OUT: the {} to read and the {} to write (.png .tif .exr .ktx2 .dds). "
                           "With -o: one or more {}s to read. <UDIM> in a file name means all "
                           "tiles that exist. {}",
                           input, output, input, details));
@@ -144,6 +165,7 @@ std::vector<int> depths_of(const std::filesystem::path& output) {
     if (extension == ".png") return {16, 8};
     if (extension == ".tif" || extension == ".tiff") return {16, 8, 32};
     if (extension == ".exr") return {32};
+    if (is_texture(output)) return {16, 8, 32};
     return {};
 }
 
@@ -217,6 +239,7 @@ NormalMapFormat format_of(const MapOutputOptions& options, const std::filesystem
                           const MapOutputDefaults& defaults) {
     const std::vector<int> depths = depths_of(output);
     if (depths.empty()) refuse_format(output);
+    if (is_texture(output)) return texture_input_format(options, defaults);
     const bool has_default = defaults.bits && std::ranges::count(depths, *defaults.bits) > 0;
     const int bits = options.bits.value_or(has_default ? *defaults.bits : depths.front());
     const bool suggests_half = bits == 16 && extension_of(output) == ".exr";
@@ -234,6 +257,8 @@ NormalMapFormat format_of(const MapOutputOptions& options, const std::filesystem
 ImageWriteOptions write_options_of(const MapOutputOptions& options,
                                    const std::filesystem::path& output) {
     if (options.fast && options.small) throw UsageError("--fast, --small: contradict each other");
+    if ((options.fast || options.small) && is_texture(output))
+        throw UsageError("--fast, --small: have no effect on textures");
     if (options.half && extension_of(output) != ".exr")
         throw UsageError("--half: is for .exr, not " + output.filename().string());
     ImageWriteOptions result;

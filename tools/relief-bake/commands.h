@@ -30,6 +30,10 @@ Command add_convert_command(CLI::App& tool);
 Command add_map_check_command(CLI::App& tool);
 Command add_heights_command(CLI::App& tool);
 Command add_pack_command(CLI::App& tool);
+Command add_textures_command(CLI::App& tool);
+
+/// Returns whether a file is a texture for GPUs, by its extension.
+bool is_texture(const std::filesystem::path& file);
 
 /// Adds --outside drop|repeat. Target: bool or an optional of it, true for repeat.
 template <typename Target>

@@ -69,6 +69,14 @@ struct TextureOptions {
     std::optional<int> zstd_level;
 };
 
+/// The options of maps that hold no normals.
+struct ValueOptions {
+    std::optional<MapKind> kind;
+    std::optional<int> channel;
+    std::optional<float> alpha_cutoff;
+    std::optional<std::filesystem::path> normals;
+};
+
 /// The options of a conversion, the same for every map of a call.
 struct ConvertRequest {
     MapInputOptions input;
@@ -84,6 +92,7 @@ struct ConvertRequest {
     AlphaChoice alpha = AlphaChoice::keep;
     MapOutputOptions output;
     TextureOptions texture;
+    ValueOptions values;
 
     /// Returns whether the output has the alpha of an input that has some.
     [[nodiscard]] bool keeps_alpha() const {
@@ -138,10 +147,23 @@ struct MapConversion {
 /// \throws FileError, UsageError
 MapConversion convert_map(const Job& job, const ConvertRequest& request, Stages& stages);
 
-/// Returns whether a file is a texture, by its extension.
-bool is_texture(const std::filesystem::path& file);
-
 void add_texture_options(CLI::App& app, TextureOptions& options);
+
+// Maps that hold no normals become textures.
+
+void add_value_options(CLI::App& app, ValueOptions& options);
+
+/// \throws UsageError if options contradict each other, or have no effect
+void check_value_options(const CLI::App& app, const ConvertRequest& request,
+                         const std::filesystem::path& output);
+
+/// The kind of a map that holds no normals: that of --kind, or of the metadata of the file. Absent:
+/// the map holds normals. \throws FileError if the file cannot be read
+std::optional<MapKind> value_kind_of(const Job& job, const ConvertRequest& request);
+
+/// Converts a map that holds no normals. \throws FileError, UsageError
+FileOutcome convert_values(const Job& job, const ConvertRequest& request, MapKind kind,
+                           Stages& stages);
 
 /// \throws UsageError if options contradict each other, or have no effect on this file
 void check_texture_options(const CLI::App& app, const ConvertRequest& request,

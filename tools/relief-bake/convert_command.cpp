@@ -383,6 +383,7 @@ ExitCode run(const CLI::App& app, const MapFiles& files, const ConvertRequest& g
     InputByOutput inputs;
     work.check = [&](const Job& job) {
         // For textures, --for sets only the direction of green.
+        check_value_options(app, given, job.output);
         check_texture_options(app, given, job.output);
         if (!is_texture(job.output)) {
             format_of(request.output, job.output);
@@ -391,6 +392,8 @@ ExitCode run(const CLI::App& app, const MapFiles& files, const ConvertRequest& g
         check_files(job, request, inputs);
     };
     work.work = [&](const Job& job, Stages& stages) -> FileOutcome {
+        if (const auto kind = value_kind_of(job, request))
+            return convert_values(job, request, *kind, stages);
         relief::detail::FileSet levels;
         const MapConversion conversion = convert_map(job, request, stages);
         levels.commit();
@@ -430,7 +433,9 @@ Command add_convert_command(CLI::App& tool) {
         ConvertRequest request;
     };
     CLI::App& app = add_subcommand(
-        tool, "convert", "Converts normal maps: conventions, size, strength, details, mip levels.");
+        tool, "convert",
+        "Converts normal maps: conventions, size, strength, details, mip levels; and maps of all "
+        "kinds to textures.");
     const auto options = std::make_shared<Options>();
     ConvertRequest& request = options->request;
     add_map_files(app, options->files, "normal map",
@@ -450,12 +455,13 @@ Command add_convert_command(CLI::App& tool) {
     add_map_folder(app, options->files);
     add_map_output_options(app, request.output, true);
     add_texture_options(app, request.texture);
+    add_value_options(app, request.values);
     add_report_options(app, options->files.report);
     add_general_options(app, options->files.general);
     set_common_options(
         app, {"--input-green", "--flip", "--resize", "--strength", "--detail", "--to-object",
               "--to-tangent", "--mips", "--roughness-from-variance", "--output", "--green",
-              "--bits", "--dither", "--format", "--max-error", "--report", "--strict"});
+              "--bits", "--dither", "--format", "--kind", "--max-error", "--report", "--strict"});
     set_examples(app, {"relief-bake bump data/bricks-height.png out/bricks.png",
                        "relief-bake convert out/bricks.png out/bricks-dx.png --flip green",
                        "relief-bake convert out/bricks.png out/bricks8.png --bits 8 --dither "
@@ -465,7 +471,9 @@ Command add_convert_command(CLI::App& tool) {
                        "--detail-repeat 4",
                        "relief-bake convert out/bricks.png out/mips.png --mips "
                        "--roughness-from-variance 0.3",
-                       "relief-bake convert out/bricks.png out/bricks.ktx2 --format bc5 --mips"});
+                       "relief-bake convert out/bricks.png out/bricks.ktx2 --format bc5 --mips",
+                       "relief-bake convert data/bricks-diffuse.png out/bricks-color.ktx2 --kind "
+                       "color --mips"});
     return {&app, [&app, options] { return run(app, options->files, options->request); }};
 }
 

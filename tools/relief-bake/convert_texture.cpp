@@ -8,6 +8,7 @@
 
 #include "common/options.h"
 #include "convert.h"
+#include "map_textures.h"
 #include "relief/mesh/block_compression.h"
 #include "relief/mesh/map_description.h"
 #include "relief/mesh/normal_map.h"
@@ -17,25 +18,12 @@
 namespace relief::tools {
 namespace {
 
-/// The formats that can store normals.
-constexpr TextureFormat normal_formats[] = {
-    TextureFormat::bc5,    TextureFormat::bc5_snorm, TextureFormat::bc7,
-    TextureFormat::rg8,    TextureFormat::rgba8,     TextureFormat::rg16,
-    TextureFormat::rgba16, TextureFormat::rg16f,     TextureFormat::rgba16f};
-
 /// The encodings that --max-error tries, the smallest and fastest first.
 constexpr TextureEncoding tried_encodings[] = {{TextureFormat::bc5, BlockQuality::fast},
                                                {TextureFormat::bc5, BlockQuality::normal},
                                                {TextureFormat::bc5, BlockQuality::best},
                                                {TextureFormat::rg8, BlockQuality::normal},
                                                {TextureFormat::rg16, BlockQuality::normal}};
-
-Choices<TextureFormat> format_choices() {
-    Choices<TextureFormat> choices;
-    for (const TextureFormat format : normal_formats)
-        choices.emplace_back(enum_name(format), format);
-    return choices;
-}
 
 /// The codes of components in the samples of a format.
 NormalMapFormat normal_format_of(TextureFormat format) {
@@ -100,18 +88,15 @@ ErrorStats error_of(const Image& exact, const Image& result) {
 
 }  // namespace
 
-bool is_texture(const std::filesystem::path& file) {
-    const std::string extension = extension_of(file);
-    return extension == ".ktx2" || extension == ".dds";
-}
-
 void add_texture_options(CLI::App& app, TextureOptions& options) {
     const std::string group = "Textures (.ktx2 and .dds)";
-    add_choice(app, "--format", options.format, format_choices(),
-               "Format of the texels. bc5: 8 bits per texel, x and y only, as engines read it; "
-               "bc5-snorm: the same with signed codes, flat is exact; bc7: 8 bits per texel, with "
-               "z and alpha; the others are not compressed, and rg formats have no z. --mips "
-               "stores all levels in the file. Default: bc5.")
+    add_choice(app, "--format", options.format, texture_format_choices(),
+               "Format of the texels. Normals: bc5 (8 bits per texel, x and y only, as engines "
+               "read it), bc5-snorm (the same with signed codes, flat is exact), bc7 (with z and "
+               "alpha), rg8, rgba8, rg16, rgba16, rg16f or rgba16f (not compressed). Colors: bc7, "
+               "bc1 (4 bits, no alpha), bc1a (alpha of 0 or 1), bc3 or rgba8. Packed maps: bc7, "
+               "bc1, bc3 or rgba8. Maps of one value: bc4, r8, r16 or r16f. --mips stores all "
+               "levels in the file. Default: the first one.")
         .group(group);
     add_choice(app, "--quality", options.quality, enum_choices<BlockQuality>(),
                "Search for block formats: fast, normal or best. Default: normal.")
@@ -147,6 +132,12 @@ void check_texture_options(const CLI::App& app, const ConvertRequest& request,
     if (request.texture.zstd_level && extension_of(output) == ".dds")
         throw UsageError("--zstd: compresses .ktx2 files only");
     const std::optional<TextureFormat> format = request.texture.format;
+    const bool holds_values = request.values.kind && !are_normals(*request.values.kind);
+    const auto normal_formats = find_map_texture_kind(MapKind::normal)->formats;
+    if (format && !holds_values && std::ranges::count(normal_formats, *format) == 0) {
+        throw UsageError(fmt::format("--format {}: does not store normals", enum_name(*format)),
+                         "give --kind with the kind of the map, or another format");
+    }
     if (request.texture.quality && format && !block_format_of(*format)) {
         throw UsageError(
             fmt::format("--quality: has no effect on {}, which has no blocks", enum_name(*format)));

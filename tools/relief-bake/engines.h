@@ -38,6 +38,9 @@ struct EngineRules {
     int bits;                 ///< Of normal maps in PNG and TIFF.
     const char* normal_name;  ///< The usual end of the file name.
     const char* packed_name;
+    const char* color_name;
+    const char* emission_name;
+    const char* height_name;
     int channels;  ///< Of the packed image.
     std::array<PackedChannel, 4> packed;
 };
@@ -48,6 +51,9 @@ inline constexpr std::array engine_rules = {
                 8,
                 "_normal",
                 "_orm",
+                "_baseColor",
+                "_emissive",
+                "_height",
                 3,
                 {PackedChannel::occlusion, PackedChannel::roughness, PackedChannel::metalness,
                  PackedChannel::zero}},
@@ -56,6 +62,9 @@ inline constexpr std::array engine_rules = {
                 8,
                 "_normal",
                 "_orm",
+                "_albedo",
+                "_emission",
+                "_height",
                 3,
                 {PackedChannel::occlusion, PackedChannel::roughness, PackedChannel::metalness,
                  PackedChannel::zero}},
@@ -64,6 +73,9 @@ inline constexpr std::array engine_rules = {
                 8,
                 "_Normal",
                 "_MaskMap",
+                "_BaseMap",
+                "_Emission",
+                "_Height",
                 4,
                 {PackedChannel::metalness, PackedChannel::occlusion, PackedChannel::zero,
                  PackedChannel::smoothness}},
@@ -72,6 +84,9 @@ inline constexpr std::array engine_rules = {
                 8,
                 "_N",
                 "_ORM",
+                "_D",
+                "_E",
+                "_H",
                 3,
                 {PackedChannel::occlusion, PackedChannel::roughness, PackedChannel::metalness,
                  PackedChannel::zero}},

@@ -31,6 +31,7 @@ namespace {
 
 /// The bit depths that the file can store and the options leave open, in ascending order.
 std::vector<int> available_depths(const MeshBakeRequest& request) {
+    if (is_texture(request.output)) return {32};
     if (request.map.bits) return {*request.map.bits};
     std::vector<int> depths = depths_of(request.output);
     // Options for codes have no effect on floats.

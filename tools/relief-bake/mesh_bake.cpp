@@ -712,7 +712,10 @@ Summary summary_of(const MeshBakeRequest& request, const MeshBake& bake, const S
                       return map_json(map, bake.origin);
                   })}});
     summary.add("missed", all_missed_lines(request, bake));
-    summary.add("format", fmt::format("{}, {}", space_text(request, bake), to_string(format)),
+    const char* const stored =
+        is_texture(request.output) ? ", stored as a texture with all mip levels" : "";
+    summary.add("format",
+                fmt::format("{}, {}{}", space_text(request, bake), to_string(format), stored),
                 {{"space", enum_name(request.bake.space)},
                  {"bits", format.bits},
                  {"green", enum_name(format.green)},

@@ -16,6 +16,7 @@
 #include "common/options.h"
 #include "common/summary.h"
 #include "engines.h"
+#include "pack.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
@@ -23,21 +24,9 @@
 namespace relief::tools {
 namespace {
 
-/// An image, or one of its channels.
-struct ChannelFile {
-    std::filesystem::path file;
-    std::optional<int> channel;  ///< Absent: gray.
-};
-
-/// The values of one property: an image or a constant.
-using ChannelInput = std::variant<double, ChannelFile>;
-
 struct PackRequest {
     std::filesystem::path output;
-    std::optional<ChannelInput> occlusion, roughness, smoothness, metalness;
-    Engine engine = Engine::gltf;
-    int bits = 8;
-    AssumedKinds assumed;
+    PackContents contents;
     ReportOptions report;
     GeneralOptions general;
 };
@@ -80,15 +69,8 @@ const char* name_of(PackedChannel channel) {
     return "nothing";
 }
 
-/// A channel of the packed image and what it is made of.
-struct ChannelSource {
-    PackedChannel content = PackedChannel::zero;
-    ChannelInput input = 0.0;
-    bool is_inverted = false;
-};
-
 /// Returns the source of a channel. Maps that are not given are 1, and metalness is 0.
-ChannelSource source_of(const PackRequest& request, PackedChannel channel) {
+ChannelSource source_of(const PackContents& request, PackedChannel channel) {
     switch (channel) {
         case PackedChannel::occlusion:
             return {channel, request.occlusion.value_or(1.0), false};
@@ -120,7 +102,7 @@ std::string to_string(const ChannelSource& source) {
 /// Returns the kinds of maps that may hold a property. A packed map has several.
 std::vector<MapKind> accepted_kinds(PackedChannel content) {
     if (content == PackedChannel::occlusion) return {MapKind::occlusion, MapKind::packed};
-    if (content == PackedChannel::metalness) return {MapKind::packed};
+    if (content == PackedChannel::metalness) return {MapKind::metalness, MapKind::packed};
     return {MapKind::roughness, MapKind::packed};
 }
 
@@ -138,7 +120,8 @@ bool is_gray(const Image& image) {
         image.samples);
 }
 
-/// Returns the channel to read. \throws FileError if the image has no such channel, or colors
+}  // namespace
+
 int channel_to_read(const ChannelFile& file, const Image& image) {
     if (file.channel) {
         // The second channel of two is alpha.
@@ -156,6 +139,8 @@ int channel_to_read(const ChannelFile& file, const Image& image) {
     }
     return 0;
 }
+
+namespace {
 
 double value_of(std::uint8_t code) {
     return code / 255.0;
@@ -196,14 +181,9 @@ void fill_channel(std::span<Code> codes, std::size_t channel, std::size_t channe
         image->samples);
 }
 
-struct Packed {
-    Image image;
-    std::vector<ChannelSource> sources;
-    Findings findings;
-};
+}  // namespace
 
-/// Reads the maps one after another. \throws FileError if they differ in size
-Packed pack(const PackRequest& request) {
+Packed pack(const PackContents& request) {
     const EngineRules& rules = rules_of(request.engine);
     Packed packed;
     for (int i = 0; i < rules.channels; ++i)
@@ -249,13 +229,16 @@ Packed pack(const PackRequest& request) {
     return packed;
 }
 
+namespace {
+
 /// \throws UsageError, FileError
 void check_pack(const PackRequest& request) {
-    if (request.roughness && request.smoothness)
+    const PackContents& contents = request.contents;
+    if (contents.roughness && contents.smoothness)
         throw UsageError("--roughness, --smoothness: contradict each other", "give one of them");
     std::vector<std::filesystem::path> files = {request.output};
     for (const auto* input :
-         {&request.occlusion, &request.roughness, &request.smoothness, &request.metalness}) {
+         {&contents.occlusion, &contents.roughness, &contents.smoothness, &contents.metalness}) {
         if (!*input) continue;
         if (const auto* file = std::get_if<ChannelFile>(&**input)) files.push_back(file->file);
     }
@@ -263,10 +246,11 @@ void check_pack(const PackRequest& request) {
         throw UsageError("no map",
                          "give --occlusion, --roughness, --smoothness or --metalness a file");
     const std::string extension = extension_of(request.output);
-    if (extension != ".png" && extension != ".tif" && extension != ".tiff") {
+    const bool is_image = extension == ".png" || extension == ".tif" || extension == ".tiff";
+    if (!is_image && !is_texture(request.output)) {
         throw UsageError(
             fmt::format("{}: the format cannot store packed maps", request.output.string()),
-            "use .png or .tif");
+            "use .png, .tif, .ktx2 or .dds");
     }
     for (std::size_t i = 1; i < files.size(); ++i) {
         if (identity_of(files[i]) == identity_of(request.output)) {
@@ -282,14 +266,17 @@ ExitCode run_pack(const CLI::App& app, const PackRequest& request) {
     check_pack(request);
     set_thread_limit(request.general.threads);
     Stages stages(request.general.quiet);
-    const Packed packed = stages.run("pack", [&] { return pack(request); });
-    const std::string engine = enum_name(request.engine);
+    Packed packed = stages.run("pack", [&] { return pack(request.contents); });
+    const std::string engine = enum_name(request.contents.engine);
     stages.run("write", [&] {
+        Report report;
         write_image(
             request.output, packed.image,
             write_description(
                 {.kind = MapKind::packed, .detail = engine, .color_space = ColorSpace::data},
-                request.bits));
+                request.contents.bits),
+            {}, report);
+        packed.findings.add("", report);
     });
     constexpr std::array names = {"red", "green", "blue", "alpha"};
     std::vector<std::string> lines;
@@ -303,11 +290,12 @@ ExitCode run_pack(const CLI::App& app, const PackRequest& request) {
     Summary summary;
     summary.add_tool("relief-bake pack");
     summary.add("for", engine, {{"for", engine}, {"output", request.output.string()}});
-    summary.add(
-        "map",
-        fmt::format("{} x {}, {}, {} bit", packed.image.width, packed.image.height,
-                    counted(packed.sources.size(), "channel"), request.bits),
-        {{"width", packed.image.width}, {"height", packed.image.height}, {"bits", request.bits}});
+    summary.add("map",
+                fmt::format("{} x {}, {}, {} bit", packed.image.width, packed.image.height,
+                            counted(packed.sources.size(), "channel"), request.contents.bits),
+                {{"width", packed.image.width},
+                 {"height", packed.image.height},
+                 {"bits", request.contents.bits}});
     summary.add("channels", lines, {{"channels", std::move(channels)}});
     summary.add_findings(packed.findings);
     summary.add_times(stages);
@@ -317,22 +305,24 @@ ExitCode run_pack(const CLI::App& app, const PackRequest& request) {
 }
 
 void add_pack_options(CLI::App& app, PackRequest& request) {
-    add_file(app, "OUT", request.output, "Image to write (.png .tif).");
-    add_input(app, "--occlusion", request.occlusion,
+    add_file(app, "OUT", request.output,
+             "Image to write (.png .tif), or texture (.ktx2 .dds) in bc7 with mip "
+             "levels.");
+    add_input(app, "--occlusion", request.contents.occlusion,
               "Ambient occlusion: a gray image, a channel of an image (FILE:g), or a value from 0 "
               "to 1. Default: 1, not occluded.");
-    add_input(app, "--roughness", request.roughness, "Roughness. Default: 1.");
-    add_input(app, "--smoothness", request.smoothness,
+    add_input(app, "--roughness", request.contents.roughness, "Roughness. Default: 1.");
+    add_input(app, "--smoothness", request.contents.smoothness,
               "Smoothness, 1 - roughness, in place of --roughness.");
-    add_input(app, "--metalness", request.metalness, "Metalness. Default: 0.");
-    add_choice(app, "--for", request.engine, enum_choices<Engine>(),
+    add_input(app, "--metalness", request.contents.metalness, "Metalness. Default: 0.");
+    add_choice(app, "--for", request.contents.engine, enum_choices<Engine>(),
                "Channels: occlusion, roughness, metalness (gltf, godot, unreal), or metalness, "
                "occlusion, 0, smoothness in alpha (unity). Default: gltf.")
         .group("Output");
-    add_choice(app, "--bits", request.bits, Choices<int>{{"8", 8}, {"16", 16}},
+    add_choice(app, "--bits", request.contents.bits, Choices<int>{{"8", 8}, {"16", 16}},
                "Bits per channel. Default: 8.")
         .group("Output");
-    add_assume_option(app, request.assumed,
+    add_assume_option(app, request.contents.assumed,
                       {MapKind::occlusion, MapKind::roughness, MapKind::packed})
         .group("Maps");
     add_report_options(app, request.report);
