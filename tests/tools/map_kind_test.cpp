@@ -105,7 +105,7 @@ struct Reader {
 const std::vector<Reader> readers = {
     {"relief-bake convert % out/a.png --bits 8", MapKind::normal},
     {"relief-bake convert % out/a.png --flip green", MapKind::normal},
-    {"relief-bake convert % out/a.ktx2", MapKind::normal},
+    {"relief-bake convert % out/a.ktx2 --kind normal", MapKind::normal},
     {"relief-bake convert normal.png out/a.png --detail % --input-green up", MapKind::normal},
     {"relief-bake heights % out/a.png --input-green up", MapKind::normal},
     {"relief-bake check normal.png --exact %", MapKind::normal},

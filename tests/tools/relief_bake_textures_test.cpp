@@ -226,6 +226,20 @@ TEST(MapTextures, ConvertWritesEveryKind) {
     EXPECT_EQ(read_texture(workplace / "out/again.dds").format, TextureFormat::bc4);
 }
 
+TEST(MapTextures, AssumedNormalsAreNotConvertedAsTheirStatedKind) {
+    const Workplace workplace;
+    Image normals = make_image(8, 8, 3, 8, ColorSpace::data);
+    const auto samples = normals.as<std::uint8_t>();
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        samples[i] = i % 3 == 2 ? 255 : 128;
+    write_image(workplace / "colors.png", normals,
+                write_description({.kind = MapKind::color, .color_space = ColorSpace::srgb}, 8));
+    run_bake(workplace, "convert colors.png out/color.ktx2");
+    EXPECT_TRUE(read_texture(workplace / "out/color.ktx2").is_srgb);
+    run_bake(workplace, "convert colors.png out/normal.ktx2 --assume normal");
+    EXPECT_EQ(read_texture(workplace / "out/normal.ktx2").format, TextureFormat::bc5);
+}
+
 TEST(MapTextures, WrongUseOfConvertIsRefused) {
     const Workplace workplace;
     write_map(workplace, "color.png", {200, 100, 50});

@@ -85,7 +85,8 @@ void add_value_options(CLI::App& app, ValueOptions& options) {
 
 std::optional<MapKind> value_kind_of(const Job& job, const ConvertRequest& request) {
     std::optional<MapKind> kind = request.values.kind;
-    if (!kind && is_texture(job.output)) {
+    // --assume reads the map as normals, whatever its metadata say.
+    if (!kind && is_texture(job.output) && request.input.assumed.empty()) {
         kind = read_description(read_image_info(job.input).metadata).kind;
         if (kind && find_map_texture_kind(*kind) == nullptr) kind.reset();
     }

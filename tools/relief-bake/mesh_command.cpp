@@ -630,11 +630,12 @@ Command add_mesh_command(CLI::App& tool) {
         tool, "mesh", "Bakes the normals of detailed models into a map for a simple one.");
     const auto options = std::make_shared<MeshOptions>();
     MeshBakeRequest& request = options->request;
-    add_files(app, "FILE...", options->files,
-              "HIGH... LOW OUT: one or more detailed models (.glb .gltf .obj .ply .stl .off), the "
-              "simple model with texture coordinates, and the map to write (.png .tif .exr). "
-              "<material> in the name of OUT writes a map for each material of LOW; <UDIM> writes "
-              "a map for each UDIM tile that LOW uses.");
+    add_files(
+        app, "FILE...", options->files,
+        "HIGH... LOW OUT: one or more detailed models (.glb .gltf .obj .ply .stl .off), the "
+        "simple model with texture coordinates, and the map to write (.png .tif .exr .ktx2 .dds). "
+        "<material> in the name of OUT writes a map for each material of LOW; <UDIM> writes "
+        "a map for each UDIM tile that LOW uses.");
     add_value(
         app, "-o,--output", "PATH",
         "Bake several pairs of models, each X_low from all X_high. PATH is a folder for the "
