@@ -69,8 +69,9 @@ bool is_usable(const Mesh& mesh, const glm::uvec3& triangle) {
 }
 
 void Maker::repair(Report& report) {
-    const Mesh& mesh = source_.mesh;
-    validate(mesh);
+    validate(source_.mesh);
+    Mesh mesh =
+        options_.repair ? repaired(source_.mesh, *options_.repair, report).mesh : source_.mesh;
     std::vector<std::uint32_t> usable;
     usable.reserve(mesh.triangles.size());
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -82,7 +83,7 @@ void Maker::repair(Report& report) {
         }
     }
     if (usable.empty()) throw InvalidInput("has no triangle with an area and finite positions");
-    high_ = usable.size() == mesh.triangles.size() ? mesh : part_of(mesh, usable);
+    high_ = usable.size() == mesh.triangles.size() ? std::move(mesh) : part_of(mesh, usable);
     if (high_.normals.empty()) {
         FrameOptions frames;
         frames.normals = NormalWeight::angle;

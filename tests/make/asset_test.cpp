@@ -153,9 +153,13 @@ TEST(MakeAssetInputs, RemovesTrianglesWithoutFinitePositions) {
     mesh.positions[200].y = test::infinite;
     const Asset asset = make_asset(source_of(mesh), quick_options(200));
     expect_sound(asset);
-    EXPECT_EQ(report_of(asset, "repair")
+    const std::size_t removed = mesh.triangles.size() - asset.source_triangles;
+    EXPECT_EQ(report_of(asset, "repair").count("triangle with a non-finite corner"), removed);
+    AssetOptions as_it_is = quick_options(200);
+    as_it_is.repair.reset();
+    EXPECT_EQ(report_of(make_asset(source_of(mesh), as_it_is), "repair")
                   .count("triangle without area or with a position that is not finite"),
-              mesh.triangles.size() - asset.source_triangles);
+              removed);
     for (glm::vec3& position : mesh.positions)
         position.x = test::not_a_number;
     try {
@@ -206,7 +210,16 @@ TEST(MakeAssetInputs, AcceptsPartsThatFaceInwards) {
     Mesh mesh = rippled_sphere(24);
     for (std::size_t i = 0; i < mesh.triangles.size() / 3; ++i)
         std::swap(mesh.triangles[i].y, mesh.triangles[i].z);
-    expect_sound(make_asset(source_of(mesh), quick_options(300)));
+    const Asset asset = make_asset(source_of(mesh), quick_options(300));
+    expect_sound(asset);
+    EXPECT_EQ(report_of(asset, "repair").count("triangle with the wrong winding"),
+              mesh.triangles.size() / 3);
+    for (const glm::uvec3& triangle : asset.mesh.triangles) {
+        const glm::vec3& a = asset.mesh.positions[triangle.x];
+        const glm::vec3 normal =
+            glm::cross(asset.mesh.positions[triangle.y] - a, asset.mesh.positions[triangle.z] - a);
+        EXPECT_GT(glm::dot(normal, a), 0.0F) << "the sphere is around the origin";
+    }
 }
 
 TEST(MakeAssetInputs, KeepsAllOfAHundredParts) {

@@ -73,7 +73,8 @@ void check_outputs(const MakeCommand& command, const JobList& list) {
 
 Json options_json(const MakeCommand& command) {
     const make::AssetOptions& asset = command.request.asset;
-    Json json = {{"triangles", asset.triangles},
+    Json json = {{"repair", asset.repair.has_value()},
+                 {"triangles", asset.triangles},
                  {"size", {asset.size.x, asset.size.y}},
                  {"padding", asset.padding},
                  {"keep_uvs", asset.keep_texcoords},
@@ -101,6 +102,7 @@ std::string repeating_line(const MakeCommand& command, const Job& job) {
         asset.padding,
         asset.crease_angle ? fmt::format("{:.6g}", *asset.crease_angle * 180.0 / std::numbers::pi)
                            : "none");
+    if (!asset.repair) line += " --no-repair";
     if (asset.keep_texcoords) line += " --keep-uvs";
     if (command.request.measures_loss) line += " --loss";
     line += fmt::format(" --samples {} --occlusion-rays {} --lods {} --for {}", asset.samples,
@@ -221,6 +223,13 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
               [&asset](const std::string& subject, const std::string& text) {
                   asset.levels = static_cast<std::size_t>(parse_integer(subject, text, 0, 16));
               })
+        .group(shape);
+    add_switch(
+        app, "--no-repair",
+        "Keep the triangles as they are, apart from those without an area or finite positions. "
+        "Otherwise equal vertices are merged, repeated triangles removed, parts oriented "
+        "outwards and non-manifold edges cut (relief-mesh repair).",
+        [&asset] { asset.repair.reset(); })
         .group(shape);
     const std::string maps = "Maps";
     add_value(app, "--size", "N|WxH", "The size of the maps in texels. Default: 2048.",

@@ -51,7 +51,9 @@ std::vector<PlannedStage> plan_of(const MakeRequest& request, const make::AssetS
                                   : "smooth";
     std::vector<PlannedStage> plan = {
         {"repair",
-         fmt::format("remove unusable triangles{}",
+         fmt::format("{}{}",
+                     options.repair ? "merge vertices, orient parts, cut non-manifold edges"
+                                    : "remove unusable triangles",
                      source.mesh.normals.empty() ? "; compute normals, " + edges : ""),
          costs.repair * dense},
         {"decimate",

@@ -20,6 +20,7 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/material.h"
 #include "relief/mesh/mesh.h"
+#include "relief/mesh/repair.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/topology.h"
 #include "relief/mesh/unwrap.h"
@@ -42,6 +43,9 @@ struct AssetSource {
 };
 
 struct AssetOptions {
+    /// The steps of the repair; absent: only triangles without area are removed, and those with a
+    /// position that is not finite.
+    std::optional<RepairOptions> repair = RepairOptions{};
     std::size_t triangles = 5000;  ///< The target number of triangles, at least 1.
     glm::ivec2 size{2048};         ///< Of the maps in texels, 16 to 16384 each.
     /// The distance of charts in texels; the maps are padded by as many.
@@ -104,7 +108,8 @@ struct Asset {
 
 /// Runs the stages from the source to the maps.
 ///
-/// - *repair* removes triangles without area or with a position that is not finite.
+/// - *repair* merges equal vertices, orients parts outwards and separates non-manifold edges
+///   (repair.h), and removes triangles without area.
 /// - *decimate* reduces the surface to the target number of triangles (topology.h). A source that
 ///   has no more keeps them, which is reported.
 /// - *unwrap* divides at hard edges and packs the charts into the map (unwrap.h).
