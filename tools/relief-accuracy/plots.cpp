@@ -334,8 +334,9 @@ std::vector<Legend> varying_choices(const ordered_json& measurements) {
     for (const ordered_json& one : measurements) {
         const ordered_json all = one.value("choices", ordered_json::object());
         for (const auto& [name, value] : all.items()) {
-            if (std::none_of(choices.begin(), choices.end(),
-                             [&name = name](const Legend& known) { return known.name == name; }))
+            if (std::none_of(choices.begin(), choices.end(), [&wanted = name](const Legend& known) {
+                    return known.name == wanted;
+                }))
                 choices.push_back({name, {}});
         }
     }

@@ -257,11 +257,11 @@ std::string chart_table(const ordered_json& chart) {
          {std::pair("slope, fitted", "/order"), std::pair("slope, in theory", "/expected_order"),
           std::pair("breaks at", "/breaks_at")}) {
         const ordered_json& curves = chart.at("curves");
-        if (std::any_of(curves.begin(), curves.end(), [path = path](const ordered_json& curve) {
-                return number_at(curve, path).has_value();
+        if (std::any_of(curves.begin(), curves.end(), [key = path](const ordered_json& curve) {
+                return number_at(curve, key).has_value();
             }))
-            row(name, [path = path](const ordered_json& curve) {
-                return number_text(number_at(curve, path));
+            row(name, [key = path](const ordered_json& curve) {
+                return number_text(number_at(curve, key));
             });
     }
     return fmt::format(
