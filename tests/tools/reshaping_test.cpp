@@ -662,8 +662,8 @@ TEST(LodsCommand, SwitchesAtTheDistanceOfEqualDifference) {
         const double step = 4.0 * std::log2(level["pixels"].get<double>());
         EXPECT_NEAR(step, std::round(step), 1e-6);
         const json& exact = by_distance["levels"][i];
-        EXPECT_TRUE(level["distance"]["sampled"]);
-        EXPECT_FALSE(exact["distance"]["sampled"]);
+        EXPECT_EQ(level["distance"]["sampled"], true);
+        EXPECT_EQ(exact["distance"]["sampled"], false);
         const double largest = exact["distance_pixels"].get<double>() *
                                level["pixels"].get<double>() / exact["pixels"].get<double>();
         EXPECT_LE(level["distance_pixels"].get<double>(), largest * (1.0 + 1e-6))
