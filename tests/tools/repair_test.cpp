@@ -110,6 +110,17 @@ TEST(RemeshCommand, MakesShellsOfOpenSurfacesOnRequest) {
               0);
 }
 
+TEST(RemeshCommand, RemovesTangentsWithoutTextureCoordinates) {
+    const Workplace workplace;
+    ASSERT_EQ(workplace.run("relief-mesh process data/vase.obj out/a.glb --tangents mikktspace")
+                  .exit_code,
+              0);
+    const ProgramResult result =
+        workplace.run("relief-mesh remesh out/a.glb out/b.glb --resolution 24");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("tangents of other triangles"));
+}
+
 TEST(RepairAndRemeshCommands, RefuseWrongOptions) {
     const Workplace workplace;
     workplace.write_square("square.obj", true);

@@ -293,7 +293,10 @@ FramedMesh JoinedPrimitives::part(const FramedMesh& changed, std::size_t i, Norm
     if (before.colors.empty()) part.mesh.colors.clear();
     if (!before.tangents.empty()) {
         // glTF ignores tangents without normals.
-        const bool possible = !tangent_texcoords_[i].empty() && !part.mesh.normals.empty();
+        // New vertices have texture coordinates only if the change computes them.
+        const bool has_texcoords = changed.source_vertex.empty() ? !part.mesh.texcoords.empty()
+                                                                 : !tangent_texcoords_[i].empty();
+        const bool possible = has_texcoords && !part.mesh.normals.empty();
         report.add("tangents of other triangles", "primitive", ids_[i].primitive,
                    possible ? "are recomputed" : "are removed");
         if (possible) part = with_new_tangents(std::move(part), changed, i, report);
