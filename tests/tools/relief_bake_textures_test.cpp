@@ -122,8 +122,7 @@ TEST(TexturesCommand, UncertainFilesInFoldersAreReported) {
          {"textures maps -o out --kind other.png=height", 2,
           "--kind other.png: no input has this name"},
          {"textures maps -o out --container dds --zstd 3", 2, "compresses .ktx2 files only"},
-         {"textures maps -o out --kind rock_depth.png=curvature", 2, "not one of normal"},
-         {"textures out -o out", 2, "no map was recognized"}});
+         {"textures maps -o out --kind rock_depth.png=curvature", 2, "not one of normal"}});
 }
 
 TEST(TexturesCommand, InputsAreNotReplaced) {
