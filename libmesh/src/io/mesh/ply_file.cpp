@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads PLY files: ASCII and binary ones of both byte orders, and all scalar types. Binary files are
-// read in pieces, and triangles go straight to the mesh. Malformed files throw FileError.
+// Reads PLY files: ASCII and binary ones of both byte orders, and all scalar types. Binary files
+// are read in pieces, and triangles go straight to the mesh. Malformed files throw FileError.
 //
 // relief does not use OpenMesh 9's reader: it hangs on some broken headers, allocates gigabytes for
 // a negative list length, refuses integer positions and unsigned index types other than its own,
