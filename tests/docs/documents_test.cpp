@@ -150,6 +150,25 @@ std::vector<std::string> documents() {
     return {found.begin(), found.end()};
 }
 
+/// Returns the commands of relief in blocks without a language, which no test would run.
+std::vector<std::string> commands_in_plain_blocks(const std::string& page) {
+    std::vector<std::string> commands;
+    std::istringstream lines(page);
+    bool in_block = false;
+    bool is_plain = false;
+    for (std::string line; std::getline(lines, line);) {
+        const std::string text = trimmed(line);
+        if (text.starts_with("```")) {
+            in_block = !in_block;
+            is_plain = in_block && text == "```";
+        } else if (is_plain && starts_with_any(text, {"relief ", "relief-"}) &&
+                   text.find(": error:") == std::string::npos) {
+            commands.push_back(text);
+        }
+    }
+    return commands;
+}
+
 struct Page {
     std::string name;
     std::vector<std::string> commands;
@@ -233,6 +252,17 @@ std::string with_few_rounds(const std::string& command) {
     if (!(is_run || has("relief-accuracy own ")) || has("--no-times") || has("--repeats"))
         return command;
     return command + (is_run ? " --repeats 3 --passes 1" : " --repeats 3");
+}
+
+TEST(ShownCommands, AreInShellBlocks) {
+    EXPECT_EQ(commands_in_plain_blocks("```\nrelief-mesh info a\n```\n```sh\nrelief-mesh b\n```\n"
+                                       "```\nrelief-mesh: error: no\n```\nrelief-mesh\n"),
+              std::vector<std::string>{"relief-mesh info a"});
+    for (const std::string& name : documents()) {
+        EXPECT_EQ(commands_in_plain_blocks(read_bytes(source_directory() / name)),
+                  std::vector<std::string>{})
+            << name;
+    }
 }
 
 TEST(ShownCommands, MeasureInFewRoundsUnlessTheyStateTheNumber) {
