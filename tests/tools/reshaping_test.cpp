@@ -614,10 +614,12 @@ TEST(LodsCommand, KeepsTheChildrenOfANodeOutOfItsLevels) {
     EXPECT_FALSE(root["nodes"][2].contains("translation"));
     EXPECT_EQ(root["nodes"][3]["name"], "vase_LOD1");
     EXPECT_EQ(read_document(workplace / "out/lods.gltf").view().primitives.size(), 1U);
-    const auto again =
-        workplace.run("relief-mesh lods out/lods.gltf out/again.glb --levels 1 --switch distance");
-    EXPECT_EQ(again.exit_code, 1);
-    EXPECT_THAT(again.error, testing::HasSubstr("already has levels of detail"));
+    for (const std::string separate : {"", " --separate"}) {
+        const auto again = workplace.run(
+            "relief-mesh lods out/lods.gltf out/again.glb --levels 1 --switch distance" + separate);
+        EXPECT_EQ(again.exit_code, 1);
+        EXPECT_THAT(again.error, testing::HasSubstr("already has levels of detail"));
+    }
     workplace.write("old.glb", "old");
     expect_refusals(workplace, "relief-mesh", "old.glb",
                     {{"relief-mesh lods data/vase.obj out/old.glb --names --separate", 2,

@@ -433,6 +433,10 @@ LodsResult make_levels(const LodsCommand& command, const Job& job, Stages& stage
     if (const auto* contents = std::get_if<MeshFile>(&model))
         model = about(job.input, [&] { return GltfDocument::from_mesh(*contents, report); });
     done.findings.add("", report);
+    if (std::get<GltfDocument>(model).has_levels_of_detail()) {
+        throw failure(job.input, "already has levels of detail (MSFT_lod)",
+                      "give the model that they were made from");
+    }
     relief::detail::FileSet files;
     about(job.input, [&] {
         LevelMaker(command, job, std::get<GltfDocument>(model), stages, pictures, done).make_all();

@@ -436,6 +436,9 @@ class GltfDocument {
     /// \throws InvalidInput if there is no mesh, or if a node uses it
     void remove_last_mesh();
 
+    /// Returns whether a node has lower levels of detail (MSFT_lod).
+    [[nodiscard]] bool has_levels_of_detail() const;
+
     /// Gives each node of a mesh lower levels of detail (MSFT_lod, with MSFT_screencoverage in the
     /// node's extras). The nodes of the levels are copies of the node. If it has children, a camera
     /// or animations, its mesh moves to a new child first.

@@ -124,6 +124,12 @@ void GltfDocument::remove_last_mesh() {
     root["meshes"].erase(count - 1);
 }
 
+bool GltfDocument::has_levels_of_detail() const {
+    return std::ranges::any_of(array_in(contents_->data.root, "nodes"), [](const Json& node) {
+        return find(node, "extensions", lod_extension) != nullptr;
+    });
+}
+
 void GltfDocument::set_levels_of_detail(std::size_t mesh, std::span<const GltfLevel> levels,
                                         bool with_names) {
     Json& root = contents_->data.root;
