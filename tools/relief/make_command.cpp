@@ -83,6 +83,8 @@ Json options_json(const MakeCommand& command) {
                  {"lods", asset.levels},
                  {"for", enum_name(command.request.engine)}};
     json["loss"] = command.request.measures_loss;
+    json["max_error"] = or_null(command.request.limits.degrees);
+    json["max_picture_error"] = or_null(command.request.limits.flip);
     json["crease"] = nullptr;
     if (asset.crease_angle) json["crease"] = *asset.crease_angle * 180.0 / std::numbers::pi;
     return json;
@@ -105,6 +107,9 @@ std::string repeating_line(const MakeCommand& command, const Job& job) {
     if (!asset.repair) line += " --no-repair";
     if (asset.keep_texcoords) line += " --keep-uvs";
     if (command.request.measures_loss) line += " --loss";
+    const LossLimits& limits = command.request.limits;
+    if (limits.degrees) line += fmt::format(" --max-error {}", *limits.degrees);
+    if (limits.flip) line += fmt::format(" --max-picture-error {}", *limits.flip);
     line += fmt::format(" --samples {} --occlusion-rays {} --lods {} --for {}", asset.samples,
                         asset.occlusion ? asset.occlusion_rays : 0, asset.levels,
                         enum_name(command.request.engine));
@@ -279,6 +284,16 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
                "between normals and pixels between silhouettes, in 12 views. Needs OpenGL, also "
                "without a GPU. With --report NAME.html, the report is a page with pictures of the "
                "source and the asset, also without --loss.")
+        .group(output);
+    LossLimits& limits = command.request.limits;
+    add_number(app, "--max-error", "DEGREES", limits.degrees, {1e-4, 180.0, "degrees"},
+               "The largest mean angle between normals of the source and the asset, as --loss "
+               "prints it. The asset gets more triangles, up to those of the source, or larger "
+               "maps, up to 8192, from --triangles and --size on, in at most 6 attempts. If the "
+               "limit does not hold then, nothing is written.")
+        .group(output);
+    add_number(app, "--max-picture-error", "FLIP", limits.flip, {1e-4, 1.0, ""},
+               "The same for the largest mean FLIP of the three lights. Both limits can be given.")
         .group(output);
     add_switch(app, "--force", command.force,
                "In a folder, make all assets again. Otherwise those whose options and files are "

@@ -10,6 +10,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <utility>
 
@@ -113,18 +114,6 @@ void write_engine_maps(const MakeRequest& request, const std::filesystem::path& 
             map_file(output, "_color"), *asset.color_map,
             write_description({.kind = MapKind::color, .color_space = ColorSpace::srgb}, 8));
     }
-}
-
-/// Measures what was lost, or reports why that is not possible.
-void measure_loss(const MakeRequest& request, const Job& job, MadeAsset& made) {
-    Report report;
-    try {
-        AssetScenes scenes(job.input, job.output, request.asset.crease_angle);
-        made.loss = scenes.measure(report);
-    } catch (const shade::GpuError& error) {
-        report.add("loss that cannot be measured", "asset", 0, error.what());
-    }
-    made.findings.add("loss", report);
 }
 
 std::string atlas_text(const AtlasStats& stats, const glm::ivec2& size) {
@@ -233,49 +222,136 @@ std::vector<std::filesystem::path> outputs_of(const MakeRequest& request,
     return files;
 }
 
-MadeAsset make_file(const MakeRequest& request, const Job& job, Stages& stages) {
-    MadeAsset made;
-    const auto run_stage = [&](std::string_view name, const std::function<void()>& work) {
-        const std::string stage(name);
-        const double before = processor_seconds();
-        stages.run(stage, work);
-        made.stages.push_back({stage, peak_memory(), processor_seconds() - before});
-    };
-    make::AssetSource source;
-    run_stage("read", [&] {
-        Progress opened;
-        const ProgressScope scope(opened);
-        source = read_source(job.input, made.source, made.findings);
-        made.inputs = names_of(opened.files());
-    });
-    source.name = job.output.stem().string();
-    make::AssetOptions options = request.asset;
-    options.run_stage = run_stage;
-    made.asset = about(job.input, [&] { return make::make_asset(source, options); });
-    for (const make::StageReport& stage : made.asset.reports) {
-        made.findings.add(stage.stage, stage.report,
-                          stage.stage == "bake" ? request.asset.size.x : 0);
+namespace {
+
+/// Makes an asset from file to file, once or until limits hold.
+class FileMaker {
+  public:
+    FileMaker(const MakeRequest& request, const Job& job, Stages& stages)
+        : request_(request), job_(job), stages_(stages), options_(request.asset) {}
+
+    MadeAsset run();
+
+  private:
+    void run_stage(std::string_view name, const std::function<void()>& work);
+    void read();
+    void make_once();
+    void measure_loss();
+    [[nodiscard]] bool holds_limits();
+    void grow(Growth growth);
+
+    const MakeRequest& request_;
+    const Job& job_;
+    Stages& stages_;
+    make::AssetOptions options_;
+    make::AssetSource source_;
+    std::unique_ptr<LossMeter> meter_;  ///< Created when it is needed.
+    MadeAsset made_;
+};
+
+void FileMaker::run_stage(std::string_view name, const std::function<void()>& work) {
+    const std::string stage(name);
+    const double before = processor_seconds();
+    stages_.run(stage, work);
+    auto use = std::ranges::find(made_.stages, stage, &StageUse::stage);
+    if (use == made_.stages.end()) use = made_.stages.insert(use, {stage, 0, 0.0});
+    use->peak_bytes = peak_memory();
+    use->processor_seconds += processor_seconds() - before;
+}
+
+void FileMaker::read() {
+    Progress opened;
+    const ProgressScope scope(opened);
+    source_ = read_source(job_.input, made_.source, made_.findings);
+    source_.name = job_.output.stem().string();
+    made_.inputs = names_of(opened.files());
+}
+
+/// Makes, writes, verifies and, if requested, measures the asset.
+void FileMaker::make_once() {
+    made_.asset = about(job_.input, [&] { return make::make_asset(source_, options_); });
+    for (const make::StageReport& stage : made_.asset.reports) {
+        made_.findings.add(stage.stage, stage.report, stage.stage == "bake" ? options_.size.x : 0);
     }
-    relief::detail::FileSet files;
     run_stage("write", [&] {
         Report report;
-        made.levels = about(job.input, [&] {
-            return make::write_asset(job.output, made.asset, options.levels, report);
+        made_.levels = about(job_.input, [&] {
+            return make::write_asset(job_.output, made_.asset, options_.levels, report);
         });
-        write_engine_maps(request, job.output, made.asset);
-        made.findings.add("write", report);
+        write_engine_maps(request_, job_.output, made_.asset);
+        made_.findings.add("write", report);
     });
     run_stage("verify", [&] {
-        const Report problems = make::verify_asset(job.output, made.asset);
-        made.findings.add("verify", problems);
+        const Report problems = make::verify_asset(job_.output, made_.asset);
+        made_.findings.add("verify", problems);
     });
-    files.commit();
-    if (request.measures_loss) run_stage("loss", [&] { measure_loss(request, job, made); });
-    for (const std::filesystem::path& file : outputs_of(request, job.output)) {
-        const bool is_color = file == map_file(job.output, "_color");
-        if (!is_color || made.asset.color_map) made.files.push_back(file);
+    if (request_.measures_loss || request_.limits.any()) run_stage("loss", [&] { measure_loss(); });
+}
+
+/// Measures what was lost, or reports why that is not possible.
+void FileMaker::measure_loss() {
+    Report report;
+    try {
+        if (!meter_) {
+            meter_ = std::make_unique<LossMeter>(job_.input, job_.output, options_.crease_angle);
+        }
+        made_.loss = meter_->measure(job_.output, report);
+    } catch (const shade::GpuError& error) {
+        if (request_.limits.any()) {
+            throw FileError(job_.input, fmt::format("limits of the loss need its measurement: {}",
+                                                    error.what()));
+        }
+        report.add("loss that cannot be measured", "asset", 0, error.what());
     }
-    return made;
+    made_.findings.add("loss", report);
+}
+
+/// Notes what was lost. \throws FileError if a limit does not hold and nothing can grow
+bool FileMaker::holds_limits() {
+    if (!request_.limits.any()) return true;
+    std::vector<LimitAttempt>& attempts = made_.attempts;
+    const std::size_t triangles = std::min(options_.triangles, made_.asset.source_triangles);
+    attempts.push_back(attempt_of(*made_.loss, request_.limits, triangles, options_.size));
+    if (!attempts.back().exceeded) return true;
+    attempts.back().next = next_growth(attempts, made_.asset.source_triangles);
+    if (!attempts.back().next) throw FileError(job_.input, limits_error(request_.limits, attempts));
+    return false;
+}
+
+void FileMaker::grow(Growth growth) {
+    if (growth == Growth::size)
+        options_.size *= 2;
+    else
+        options_.triangles = std::min(2 * options_.triangles, made_.asset.source_triangles);
+}
+
+MadeAsset FileMaker::run() {
+    options_.run_stage = [this](std::string_view name, const std::function<void()>& work) {
+        run_stage(name, work);
+    };
+    run_stage("read", [&] { read(); });
+    const Findings of_source = made_.findings;
+    while (true) {
+        relief::detail::FileSet files;  // Without commit(), it removes the files.
+        make_once();
+        if (holds_limits()) {
+            files.commit();
+            break;
+        }
+        grow(*made_.attempts.back().next);
+        made_.findings = of_source;
+    }
+    for (const std::filesystem::path& file : outputs_of(request_, job_.output)) {
+        const bool is_color = file == map_file(job_.output, "_color");
+        if (!is_color || made_.asset.color_map) made_.files.push_back(file);
+    }
+    return std::move(made_);
+}
+
+}  // namespace
+
+MadeAsset make_file(const MakeRequest& request, const Job& job, Stages& stages) {
+    return FileMaker(request, job, stages).run();
 }
 
 Summary summary_of(const MakeRequest& request, const Job& job, const MadeAsset& made,
@@ -300,11 +376,16 @@ Summary summary_of(const MakeRequest& request, const Job& job, const MadeAsset& 
                     counted(asset.mesh.positions.size(), "vertex", "vertices")),
         {{"triangles", asset.mesh.triangles.size()}, {"vertices", asset.mesh.positions.size()}});
     if (asset.atlas) {
-        summary.add("atlas", atlas_text(*asset.atlas, request.asset.size),
+        summary.add("atlas",
+                    atlas_text(*asset.atlas, {asset.normal_map.width, asset.normal_map.height}),
                     {{"atlas", atlas_json(*asset.atlas)}});
     }
     summary.add("maps", map_lines(made), maps_json(asset));
     summary.add("levels", level_lines(made), {{"levels", json_list(made.levels, level_json)}});
+    if (request.limits.any()) {
+        summary.add("limits", limit_lines(request.limits, made.attempts),
+                    {{"limits", limits_json(request.limits, made.attempts)}});
+    }
     if (made.loss) summary.add("loss", loss_lines(*made.loss), {{"loss", loss_json(*made.loss)}});
     summary.add_findings(made.findings);
     summary.add("stages", stage_lines(made, stages), {{"stages", stages_json(made, stages)}});

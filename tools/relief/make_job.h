@@ -13,6 +13,7 @@
 #include "common/file_jobs.h"
 #include "common/summary.h"
 #include "engines.h"
+#include "make_limits.h"
 #include "relief/make/asset.h"
 #include "relief/shade/fidelity.h"
 
@@ -21,7 +22,8 @@ namespace relief::tools {
 struct MakeRequest {
     make::AssetOptions asset;
     Engine engine = Engine::gltf;
-    bool measures_loss = false;
+    bool measures_loss = false;  ///< Also without limits.
+    LossLimits limits;
 };
 
 /// What is known of the dense model after it is read.
@@ -53,6 +55,8 @@ struct MadeAsset {
     make::Asset asset;
     std::vector<make::AssetLevel> levels;
     std::optional<shade::Fidelity> loss;
+    /// With limits: the assets of the search. The last one is this asset.
+    std::vector<LimitAttempt> attempts;
     std::vector<std::filesystem::path> inputs;  ///< Every file that was read or searched.
     std::vector<std::filesystem::path> files;
     std::vector<StageUse> stages;
@@ -76,7 +80,8 @@ std::vector<std::filesystem::path> outputs_of(const MakeRequest& request,
 
 /// Reads, makes, writes and verifies an asset. The stages are those of make::stages_of() between
 /// "read", and "write", "verify" and, if requested, "loss". All files are replaced together at the
-/// end. \throws FileError, UsageError; then no file is changed
+/// end. With limits, the stages run again with more triangles or larger maps until the limits hold.
+/// \throws FileError, also if a limit cannot be held; UsageError. Then no file is changed
 MadeAsset make_file(const MakeRequest& request, const Job& job, Stages& stages);
 
 Summary summary_of(const MakeRequest& request, const Job& job, const MadeAsset& made,

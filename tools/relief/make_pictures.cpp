@@ -73,6 +73,13 @@ Image draw_picture(RenderCache& cache, const Context& context, Scene scene, cons
     return image;
 }
 
+Scene asset_scene(const std::filesystem::path& file) {
+    Report ignored;
+    SceneOptions options;
+    options.up = UpAxis::y;
+    return load_scene(file, options, ignored);
+}
+
 }  // namespace
 
 struct AssetScenes::Implementation {
@@ -85,11 +92,8 @@ struct AssetScenes::Implementation {
 AssetScenes::AssetScenes(const std::filesystem::path& source, const std::filesystem::path& asset,
                          std::optional<double> crease_angle)
     : implementation_(std::make_unique<Implementation>()) {
-    Report ignored;
-    SceneOptions options;
-    options.up = UpAxis::y;
     implementation_->source = source_scene(source, asset, crease_angle);
-    implementation_->asset = load_scene(asset, options, ignored);
+    implementation_->asset = asset_scene(asset);
 }
 
 AssetScenes::~AssetScenes() = default;
@@ -108,9 +112,24 @@ AssetPictures AssetScenes::draw(const make::Asset& made, const glm::ivec2& size)
     return pictures;
 }
 
-Fidelity AssetScenes::measure(Report& report) {
-    FidelityMeter meter(implementation_->context, implementation_->source, {}, report);
-    return meter.measure(implementation_->asset, report);
+struct LossMeter::Implementation {
+    Context context;
+    Report of_source;
+    FidelityMeter meter;
+
+    explicit Implementation(const Scene& source) : meter(context, source, {}, of_source) {}
+};
+
+LossMeter::LossMeter(const std::filesystem::path& source, const std::filesystem::path& beside,
+                     std::optional<double> crease_angle)
+    : implementation_(
+          std::make_unique<Implementation>(source_scene(source, beside, crease_angle))) {}
+
+LossMeter::~LossMeter() = default;
+
+Fidelity LossMeter::measure(const std::filesystem::path& asset, Report& report) {
+    report.merge(implementation_->of_source);
+    return implementation_->meter.measure(asset_scene(asset), report);
 }
 
 Image draw_charts(const make::Asset& made, const glm::ivec2& size) {

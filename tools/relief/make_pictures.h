@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Pictures of an asset and its source for the report page. OpenGL is loaded only by the
-/// constructor of AssetScenes.
+/// constructors of AssetScenes and LossMeter.
 /// Tests: tests/make/make_page_test.cpp.
 #pragma once
 
@@ -41,8 +41,25 @@ class AssetScenes {
     /// \param made  the content of the asset's file
     AssetPictures draw(const make::Asset& made, const glm::ivec2& size);
 
-    /// Measures what the asset lost.
-    shade::Fidelity measure(Report& report);
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+/// Measures what assets lost against one source, whose pictures are drawn once.
+class LossMeter {
+  public:
+    /// \param source, crease_angle  as for AssetScenes
+    /// \param beside  a file in the folder for a temporary file
+    /// \throws Error if nothing can be drawn
+    LossMeter(const std::filesystem::path& source, const std::filesystem::path& beside,
+              std::optional<double> crease_angle);
+    ~LossMeter();
+    LossMeter(const LossMeter&) = delete;
+    LossMeter& operator=(const LossMeter&) = delete;
+
+    /// \param asset  the written file
+    shade::Fidelity measure(const std::filesystem::path& asset, Report& report);
 
   private:
     struct Implementation;

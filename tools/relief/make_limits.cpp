@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Searches the triangles and the maps that hold limits of the loss.
+// Tests: tests/make/make_limits_test.cpp.
+#include "make_limits.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "relief/mesh/enum_names.h"
+
+namespace relief::tools {
+namespace {
+
+/// Rounds to the digits of the printed figures, so that a limit that holds there holds here.
+double printed(double figure) {
+    return std::round(figure * 1e4) / 1e4;
+}
+
+/// Silhouettes that differ by less are those of other samples.
+constexpr double wide_silhouettes = 0.25;
+/// A growth that leaves more of the ratio did not help.
+constexpr double helpful_ratio = 0.9;
+
+const char* name_of_limit(LossLimit limit) {
+    return limit == LossLimit::degrees ? "--max-error" : "--max-picture-error";
+}
+
+const char* text_of(Growth growth) {
+    return growth == Growth::triangles ? "twice the triangles" : "twice the size of maps";
+}
+
+bool can_grow(const LimitAttempt& last, Growth growth, std::size_t max_triangles) {
+    return growth == Growth::triangles ? last.triangles < max_triangles
+                                       : 2 * std::max(last.size.x, last.size.y) <= max_limit_size;
+}
+
+Growth other_than(Growth growth) {
+    return growth == Growth::triangles ? Growth::size : Growth::triangles;
+}
+
+/// Returns the kind that should grow, whether or not it can.
+Growth wanted_growth(const std::vector<LimitAttempt>& attempts) {
+    const LimitAttempt& last = attempts.back();
+    if (attempts.size() > 1) {
+        const LimitAttempt& before = attempts[attempts.size() - 2];
+        if (last.ratio > helpful_ratio * before.ratio) return other_than(*before.next);
+    }
+    return last.silhouettes > wide_silhouettes ? Growth::triangles : Growth::size;
+}
+
+std::string figures_of(const LimitAttempt& attempt) {
+    return fmt::format("{} and maps of {} x {}: {:.4f} degrees, FLIP {:.4f}",
+                       counted(attempt.triangles, "triangle"), attempt.size.x, attempt.size.y,
+                       attempt.degrees, attempt.flip);
+}
+
+std::string text_of(const LossLimits& limits) {
+    std::vector<std::string> texts;
+    if (limits.degrees) texts.push_back(fmt::format("--max-error {:g}", *limits.degrees));
+    if (limits.flip) texts.push_back(fmt::format("--max-picture-error {:g}", *limits.flip));
+    return fmt::format("{}", fmt::join(texts, " and "));
+}
+
+}  // namespace
+
+LimitAttempt attempt_of(const shade::Fidelity& loss, const LossLimits& limits,
+                        std::size_t triangles, const glm::ivec2& size) {
+    LimitAttempt attempt;
+    attempt.triangles = triangles;
+    attempt.size = size;
+    attempt.degrees = printed(loss.normals.mean);
+    attempt.flip = printed(loss.max_picture_mean());
+    attempt.silhouettes = loss.silhouettes.width;
+    const auto compare = [&](LossLimit limit, double figure, const std::optional<double>& most) {
+        if (!most) return;
+        const double ratio = figure / *most;
+        if (figure > *most && ratio > attempt.ratio) attempt.exceeded = limit;
+        attempt.ratio = std::max(attempt.ratio, ratio);
+    };
+    compare(LossLimit::degrees, attempt.degrees, limits.degrees);
+    compare(LossLimit::flip, attempt.flip, limits.flip);
+    return attempt;
+}
+
+std::optional<Growth> next_growth(const std::vector<LimitAttempt>& attempts,
+                                  std::size_t max_triangles) {
+    if (attempts.size() >= max_attempts) return {};
+    const Growth wanted = wanted_growth(attempts);
+    for (const Growth growth : {wanted, other_than(wanted)}) {
+        if (can_grow(attempts.back(), growth, max_triangles)) return growth;
+    }
+    return {};
+}
+
+std::vector<std::string> limit_lines(const LossLimits& limits,
+                                     const std::vector<LimitAttempt>& attempts) {
+    std::vector<std::string> lines;
+    for (const LimitAttempt& attempt : attempts) {
+        const std::string next =
+            attempt.next ? fmt::format("; next {}", text_of(*attempt.next)) : std::string();
+        lines.push_back(figures_of(attempt) +
+                        (attempt.exceeded ? fmt::format("; more than {}{}",
+                                                        name_of_limit(*attempt.exceeded), next)
+                                          : fmt::format("; {} held", text_of(limits))));
+    }
+    return lines;
+}
+
+Json limits_json(const LossLimits& limits, const std::vector<LimitAttempt>& attempts) {
+    return {{"max_error", or_null(limits.degrees)},
+            {"max_picture_error", or_null(limits.flip)},
+            {"attempts", json_list(attempts, [](const LimitAttempt& attempt) -> Json {
+                 Json json = {{"triangles", attempt.triangles},
+                              {"size", {attempt.size.x, attempt.size.y}},
+                              {"degrees", attempt.degrees},
+                              {"flip", attempt.flip},
+                              {"silhouette_pixels", attempt.silhouettes},
+                              {"exceeded", nullptr},
+                              {"next", nullptr}};
+                 if (attempt.exceeded) {
+                     json["exceeded"] = *attempt.exceeded == LossLimit::degrees
+                                            ? "max_error"
+                                            : "max_picture_error";
+                 }
+                 if (attempt.next)
+                     json["next"] = *attempt.next == Growth::triangles ? "triangles" : "size";
+                 return json;
+             })}};
+}
+
+std::string limits_error(const LossLimits& limits, const std::vector<LimitAttempt>& attempts) {
+    const auto best = std::ranges::min_element(attempts, {}, &LimitAttempt::ratio);
+    const bool at_bounds = attempts.size() < max_attempts;
+    return fmt::format(
+        "{} cannot be held: the best of {} has {}; {}", text_of(limits),
+        counted(attempts.size(), "attempt"), figures_of(*best),
+        at_bounds ? fmt::format("it has all triangles and maps of at most {}; allow a larger error",
+                                max_limit_size)
+                  : "start with more --triangles and a larger --size, or allow a larger error");
+}
+
+}  // namespace relief::tools

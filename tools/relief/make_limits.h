@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Limits of what an asset may lose, and the search for the triangles and the size of maps that
+/// hold them. Tests: tests/make/make_limits_test.cpp.
+#pragma once
+
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/summary.h"
+#include "relief/shade/fidelity.h"
+
+namespace relief::tools {
+
+/// Limits above 0 of the loss as it is printed, with four digits after the point.
+struct LossLimits {
+    std::optional<double> degrees;  ///< Of the mean angle between normals.
+    std::optional<double> flip;     ///< Of the mean FLIP with each light.
+
+    [[nodiscard]] bool any() const { return degrees || flip; }
+};
+
+enum class LossLimit { degrees, flip };
+
+/// What the next asset has more of.
+enum class Growth { triangles, size };
+
+/// The largest side of maps that the search tries.
+inline constexpr int max_limit_size = 8192;
+/// The number of assets that the search makes, with the first one.
+inline constexpr std::size_t max_attempts = 6;
+
+/// An asset of the search, and what it lost.
+struct LimitAttempt {
+    std::size_t triangles = 0;  ///< The target number.
+    glm::ivec2 size{0};
+    double degrees = 0.0;
+    double flip = 0.0;
+    double silhouettes = 0.0;  ///< In pixels.
+    /// The limit that is exceeded most, by the ratio; absent: all limits hold.
+    std::optional<LossLimit> exceeded;
+    double ratio = 0.0;          ///< The largest ratio of a figure to its limit.
+    std::optional<Growth> next;  ///< Absent in the last attempt.
+};
+
+/// \param size  of the maps
+LimitAttempt attempt_of(const shade::Fidelity& loss, const LossLimits& limits,
+                        std::size_t triangles, const glm::ivec2& size);
+
+/// Returns what the next asset has twice as much of.
+///
+/// Wide silhouettes ask for triangles, otherwise the maps get larger. If the last growth of a kind
+/// lowered the ratio by less than 10 %, the other kind is chosen.
+/// \param attempts  at least one; the limits do not hold in the last one
+/// \param max_triangles  those of the source
+/// \return absent if nothing can grow, or after max_attempts
+std::optional<Growth> next_growth(const std::vector<LimitAttempt>& attempts,
+                                  std::size_t max_triangles);
+
+/// One line for each attempt.
+std::vector<std::string> limit_lines(const LossLimits& limits,
+                                     const std::vector<LimitAttempt>& attempts);
+Json limits_json(const LossLimits& limits, const std::vector<LimitAttempt>& attempts);
+
+/// The message of a search in which the limits do not hold.
+std::string limits_error(const LossLimits& limits, const std::vector<LimitAttempt>& attempts);
+
+}  // namespace relief::tools
