@@ -263,6 +263,8 @@ void Maker::run_stage(const std::string& name, void (Maker::*work)(Report&)) {
     } else {
         (this->*work)(stage.report);
     }
+    if (options_.take_mesh && name != "bake")
+        options_.take_mesh(name, name == "repair" ? high_ : asset_.mesh);
 }
 
 Asset Maker::run() {

@@ -67,6 +67,7 @@ void check_outputs(const MakeCommand& command, const JobList& list) {
         }
     }
     if (list.folder) make_folder(*list.folder);
+    if (command.request.stages_folder) make_folder(*command.request.stages_folder);
     check(command.report, files);
     require_folder_of(list.jobs.front().output);
 }
@@ -182,6 +183,11 @@ ExitCode make(const CLI::App& app, const MakeCommand& command) {
             fmt::format("--report {}: a page describes one asset", command.report.file->string()),
             "give a .json file for several");
     }
+    if (command.request.stages_folder && !list.is_single()) {
+        throw UsageError(fmt::format("--keep-stages {}: keeps the stages of one asset",
+                                     command.request.stages_folder->string()),
+                         "make a single asset without an output folder");
+    }
     set_thread_limit(command.general.threads);
     if (command.explain) return explain(command, list);
     check_outputs(command, list);
@@ -294,6 +300,13 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
         .group(output);
     add_number(app, "--max-picture-error", "FLIP", limits.flip, {1e-4, 1.0, ""},
                "The same for the largest mean FLIP of the three lights. Both limits can be given.")
+        .group(output);
+    add_value(app, "--keep-stages", "FOLDER",
+              "Also write the mesh after each stage (01-repair.glb, 02-decimate.glb, ...) and the "
+              "baked maps as PNG files. Only for one asset.",
+              [&command](const std::string&, const std::string& text) {
+                  command.request.stages_folder = text;
+              })
         .group(output);
     add_switch(app, "--force", command.force,
                "In a folder, make all assets again. Otherwise those whose options and files are "

@@ -18,6 +18,7 @@
 #include "file_replacement.h"
 #include "make_loss.h"
 #include "make_pictures.h"
+#include "make_stages.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/map_description.h"
@@ -209,10 +210,9 @@ Json stages_json(const MadeAsset& made, const Stages& stages) {
     });
 }
 
-}  // namespace
-
-std::vector<std::filesystem::path> outputs_of(const MakeRequest& request,
-                                              const std::filesystem::path& output) {
+/// The asset, and for some engines its maps.
+std::vector<std::filesystem::path> asset_files_of(const MakeRequest& request,
+                                                  const std::filesystem::path& output) {
     std::vector<std::filesystem::path> files = {output};
     if (!has_map_files(request.engine)) return files;
     const EngineRules& rules = rules_of(request.engine);
@@ -221,8 +221,6 @@ std::vector<std::filesystem::path> outputs_of(const MakeRequest& request,
     files.push_back(map_file(output, "_color"));
     return files;
 }
-
-namespace {
 
 /// Makes an asset from file to file, once or until limits hold.
 class FileMaker {
@@ -269,17 +267,31 @@ void FileMaker::read() {
 
 /// Makes, writes, verifies and, if requested, measures the asset.
 void FileMaker::make_once() {
+    made_.files.clear();
+    std::optional<StageFiles> kept;
+    Report of_kept;
+    if (request_.stages_folder) {
+        kept.emplace(*request_.stages_folder, options_);
+        options_.take_mesh = [&](std::string_view stage, const Mesh& mesh) {
+            made_.files.push_back(kept->write_mesh(stage, mesh, source_.origin, of_kept));
+        };
+    }
     made_.asset = about(job_.input, [&] { return make::make_asset(source_, options_); });
     for (const make::StageReport& stage : made_.asset.reports) {
         made_.findings.add(stage.stage, stage.report, stage.stage == "bake" ? options_.size.x : 0);
     }
     run_stage("write", [&] {
         Report report;
+        if (kept) {
+            for (const std::filesystem::path& file : kept->write_maps(made_.asset))
+                made_.files.push_back(file);
+        }
         made_.levels = about(job_.input, [&] {
             return make::write_asset(job_.output, made_.asset, options_.levels, report);
         });
         write_engine_maps(request_, job_.output, made_.asset);
         made_.findings.add("write", report);
+        made_.findings.add("kept stages", of_kept);
     });
     run_stage("verify", [&] {
         const Report problems = make::verify_asset(job_.output, made_.asset);
@@ -341,7 +353,7 @@ MadeAsset FileMaker::run() {
         grow(*made_.attempts.back().next);
         made_.findings = of_source;
     }
-    for (const std::filesystem::path& file : outputs_of(request_, job_.output)) {
+    for (const std::filesystem::path& file : asset_files_of(request_, job_.output)) {
         const bool is_color = file == map_file(job_.output, "_color");
         if (!is_color || made_.asset.color_map) made_.files.push_back(file);
     }
@@ -349,6 +361,17 @@ MadeAsset FileMaker::run() {
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> outputs_of(const MakeRequest& request,
+                                              const std::filesystem::path& output) {
+    std::vector<std::filesystem::path> files = asset_files_of(request, output);
+    if (request.stages_folder) {
+        for (const std::filesystem::path& file :
+             StageFiles(*request.stages_folder, request.asset).all())
+            files.push_back(file);
+    }
+    return files;
+}
 
 MadeAsset make_file(const MakeRequest& request, const Job& job, Stages& stages) {
     return FileMaker(request, job, stages).run();

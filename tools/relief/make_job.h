@@ -24,6 +24,8 @@ struct MakeRequest {
     Engine engine = Engine::gltf;
     bool measures_loss = false;  ///< Also without limits.
     LossLimits limits;
+    /// Gets the results of all stages (make_stages.h).
+    std::optional<std::filesystem::path> stages_folder;
 };
 
 /// What is known of the dense model after it is read.
@@ -74,7 +76,7 @@ std::vector<PlannedStage> plan_of(const MakeRequest& request, const make::AssetS
 /// \param threads  0: all of the machine
 std::vector<std::string> lines_of(const std::vector<PlannedStage>& plan, unsigned threads);
 
-/// The files of a job: the asset, and for some engines its maps.
+/// The files of a job: the asset, for some engines its maps, and the results of stages.
 std::vector<std::filesystem::path> outputs_of(const MakeRequest& request,
                                               const std::filesystem::path& output);
 

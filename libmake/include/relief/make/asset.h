@@ -64,6 +64,9 @@ struct AssetOptions {
     /// Runs a stage, for measurements and progress; absent: it is only called. Exceptions must
     /// pass.
     std::function<void(std::string_view stage, const std::function<void()>& work)> run_stage;
+    /// Receives the mesh after each stage but "bake": after "repair" the dense one, in the space of
+    /// AssetSource::origin. Exceptions pass.
+    std::function<void(std::string_view stage, const Mesh& mesh)> take_mesh;
 };
 
 /// The names of the stages in their order: "repair", "decimate", "unwrap", "frames", "bake".

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Files with the results of single stages of `relief make`, for --keep-stages.
+/// Tests: tests/make/make_stages_test.cpp.
+#pragma once
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "relief/make/asset.h"
+#include "relief/mesh/report.h"
+
+namespace relief::tools {
+
+/// The files in a folder: a mesh for each stage of make::stages_of(), "02-decimate.glb", and the
+/// maps "05-bake-normal.png", "-occlusion" and "-color", with the numbers of the stages.
+class StageFiles {
+  public:
+    StageFiles(const std::filesystem::path& folder, const make::AssetOptions& options);
+
+    /// All files that can be written.
+    [[nodiscard]] std::vector<std::filesystem::path> all() const;
+
+    /// Writes the mesh after a stage. \param report  counts values that glTF forbids
+    /// \throws FileError \return the file
+    std::filesystem::path write_mesh(std::string_view stage, const Mesh& mesh,
+                                     const glm::dvec3& origin, Report& report) const;
+
+    /// Writes the maps of an asset. \throws FileError \return the files
+    std::vector<std::filesystem::path> write_maps(const make::Asset& asset) const;
+
+  private:
+    [[nodiscard]] std::filesystem::path file_of(std::string_view stage,
+                                                std::string_view ending) const;
+
+    std::filesystem::path folder_;
+    std::vector<std::string> stages_;
+    bool has_occlusion_;
+};
+
+}  // namespace relief::tools
