@@ -74,14 +74,6 @@ TEST(MakePage, HasTheMeasuredLoss) {
     }
 }
 
-TEST(MakePage, DescribesOneAsset) {
-    const Workplace workplace;
-    const ProgramResult result =
-        workplace.run("relief make data/vase.obj data/urn-low.obj -o out/ --report out/a.html");
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(result.error, HasSubstr("a page describes one asset"));
-}
-
 TEST(ReducedPicture, HasTheMeanOfEachSquare) {
     Image image;
     image.width = 4;

@@ -60,11 +60,19 @@ bool MakeCache::is_current(const std::filesystem::path& asset, const std::string
            are_unchanged((*entry)["inputs"]);
 }
 
+Json MakeCache::facts_of(const std::filesystem::path& asset) const {
+    const auto entry = assets_.find(asset.filename().string());
+    if (entry == assets_.end() || !entry->is_object()) return nullptr;
+    return entry->value("facts", Json());
+}
+
 void MakeCache::add(const std::filesystem::path& asset, const std::string& options,
                     const std::vector<std::filesystem::path>& inputs,
-                    const std::vector<std::filesystem::path>& outputs) {
-    assets_[asset.filename().string()] = {
-        {"options", options}, {"inputs", hashes_of(inputs)}, {"outputs", hashes_of(outputs)}};
+                    const std::vector<std::filesystem::path>& outputs, const Json& facts) {
+    assets_[asset.filename().string()] = {{"options", options},
+                                          {"inputs", hashes_of(inputs)},
+                                          {"outputs", hashes_of(outputs)},
+                                          {"facts", facts}};
 }
 
 void MakeCache::write() const {

@@ -27,10 +27,14 @@ class MakeCache {
     [[nodiscard]] bool is_current(const std::filesystem::path& asset,
                                   const std::string& options) const;
 
+    /// Returns what was remembered with an asset; null if there is nothing.
+    [[nodiscard]] Json facts_of(const std::filesystem::path& asset) const;
+
     /// Remembers an asset.
+    /// \param facts  for facts_of()
     void add(const std::filesystem::path& asset, const std::string& options,
              const std::vector<std::filesystem::path>& inputs,
-             const std::vector<std::filesystem::path>& outputs);
+             const std::vector<std::filesystem::path>& outputs, const Json& facts);
 
     /// Writes the file. \throws FileError
     void write() const;

@@ -16,6 +16,7 @@
 #include "common/summary.h"
 #include "driver.h"
 #include "make_cache.h"
+#include "make_index.h"
 #include "make_job.h"
 #include "make_page.h"
 
@@ -155,11 +156,13 @@ ExitCode make_all(const CLI::App& app, const MakeCommand& command, const JobList
     batch.jobs = list.jobs;
     batch.one_by_one = true;  // Each asset uses all processors and much memory.
     batch.head = std::move(head);
-    batch.work = [&](std::size_t index) -> FileOutcome {
+    std::vector<IndexEntry> entries(list.jobs.size());
+    const auto make_job = [&](std::size_t index) -> FileOutcome {
         const Job& job = list.jobs[index];
         const std::string options =
             fmt::format("{} {}", job.input.string(), options_json(command).dump());
         if (!command.force && cache.is_current(job.output, options)) {
+            entries[index].facts = cache.facts_of(job.output);
             Summary skipped;
             skipped.add_json({{"input", job.input.string()},
                               {"output", job.output.string()},
@@ -168,21 +171,32 @@ ExitCode make_all(const CLI::App& app, const MakeCommand& command, const JobList
         }
         Stages stages(true);
         const MadeAsset made = make_file(command.request, job, stages);
-        cache.add(job.output, options, made.inputs, made.files);
+        entries[index].facts = index_facts(made);
+        cache.add(job.output, options, made.inputs, made.files, entries[index].facts);
         cache.write();
         return {line_of(job, made, stages), made.findings,
                 summary_of(command.request, job, made, stages)};
     };
-    return run_batch(app, batch, command.report, command.general);
+    batch.work = [&](std::size_t index) {
+        entries[index].job = list.jobs[index];
+        try {
+            return make_job(index);
+        } catch (const std::exception& error) {
+            entries[index].error = error.what();
+            throw;
+        }
+    };
+    if (!has_page(command.report)) return run_batch(app, batch, command.report, command.general);
+    ReportOptions report = command.report;
+    report.file.reset();
+    const ExitCode code = run_batch(app, batch, report, command.general);
+    write_make_index(*command.report.file,
+                     list.folder ? list.folder->lexically_normal().string() : "Assets", entries);
+    return code;
 }
 
 ExitCode make(const CLI::App& app, const MakeCommand& command) {
     const JobList list = make_jobs_of(command);
-    if (has_page(command.report) && !list.is_single()) {
-        throw UsageError(
-            fmt::format("--report {}: a page describes one asset", command.report.file->string()),
-            "give a .json file for several");
-    }
     if (command.request.stages_folder && !list.is_single()) {
         throw UsageError(fmt::format("--keep-stages {}: keeps the stages of one asset",
                                      command.request.stages_folder->string()),
@@ -285,11 +299,13 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
                "The engine. unity and unreal: also write maps as PNG files beside the asset, with "
                "the names, channels and green of the engine. Default: gltf.")
         .group(output);
-    add_switch(app, "--loss", command.request.measures_loss,
-               "Measure what was lost: differences of pictures (FLIP) with three lights, degrees "
-               "between normals and pixels between silhouettes, in 12 views. Needs OpenGL, also "
-               "without a GPU. With --report NAME.html, the report is a page with pictures of the "
-               "source and the asset, also without --loss.")
+    add_switch(
+        app, "--loss", command.request.measures_loss,
+        "Measure what was lost: differences of pictures (FLIP) with three lights, degrees "
+        "between normals and pixels between silhouettes, in 12 views. Needs OpenGL, also "
+        "without a GPU. With --report NAME.html, the report is a page with pictures of the "
+        "source and the asset, also without --loss; for a folder, an index with a picture of "
+        "each asset, worst first.")
         .group(output);
     LossLimits& limits = command.request.limits;
     add_number(app, "--max-error", "DEGREES", limits.degrees, {1e-4, 180.0, "degrees"},

@@ -5,52 +5,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
-#include <map>
 #include <span>
 #include <utility>
 
 #include "common/html.h"
 #include "common/text.h"
 #include "file_replacement.h"
-#include "files.h"
 #include "make_loss.h"
 #include "make_pictures.h"
-#include "page_parts.h"
-#include "relief/mesh/image_file.h"
+#include "page_text.h"
 
 namespace relief::tools {
 namespace {
-
-std::string_view part(std::string_view name) {
-    const auto& parts = make_page_parts();
-    const auto found = std::ranges::find(parts, name, &MakePagePart::name);
-    assert(found != parts.end());
-    return found->text;
-}
-
-/// Replaces {{name}} by its text.
-std::string filled(std::string_view page, const std::map<std::string, std::string>& texts) {
-    std::string result;
-    while (true) {
-        const std::size_t begin = page.find("{{");
-        result += page.substr(0, begin);
-        if (begin == std::string_view::npos) return result;
-        const std::size_t end = page.find("}}", begin);
-        assert(end != std::string_view::npos);
-        result += texts.at(std::string(page.substr(begin + 2, end - begin - 2)));
-        page.remove_prefix(end + 2);
-    }
-}
-
-/// Returns the bytes of a PNG file.
-/// \param folder  for a temporary file
-std::string png_of(const Image& image, const std::filesystem::path& folder) {
-    const relief::detail::FileSet temporary;  // It is never committed.
-    const std::filesystem::path file = folder / "picture.png";
-    write_image(file, image);
-    return relief::detail::read_file(file);
-}
 
 /// Writes elements with pictures.
 class PageWriter {
@@ -80,10 +46,7 @@ class PageWriter {
 
 std::string PageWriter::img(const Image& image, const std::string& alt,
                             const std::string& id) const {
-    const std::string name = id.empty() ? "" : fmt::format(" id=\"{}\"", id);
-    return fmt::format(
-        "<img{} alt=\"{}\" width=\"{}\" height=\"{}\" src=\"data:image/png;base64,{}\">", name,
-        html_escaped(alt), image.width, image.height, base64(png_of(image, folder_)));
+    return html_image(image, alt, id, folder_);
 }
 
 std::string PageWriter::figures() const {
@@ -218,18 +181,18 @@ void write_make_page(const std::filesystem::path& file, const MakeRequest& reque
                      const MadeAsset& made, const Stages& stages, const std::string& command) {
     const PageWriter writer(file.parent_path(), request, job, made, stages);
     const std::string page =
-        filled(part("make.html"), {{"name", html_escaped(made.asset.name)},
-                                   {"style", std::string(part("make.css"))},
-                                   {"script", std::string(part("make.js"))},
-                                   {"figures", writer.figures()},
-                                   {"comparison", writer.comparison()},
-                                   {"command", html_escaped(command)},
-                                   {"findings", writer.findings()},
-                                   {"stages", writer.stages()},
-                                   {"loss", writer.loss()},
-                                   {"levels", writer.levels()},
-                                   {"maps", writer.maps()},
-                                   {"version", html_escaped("relief " + version() + ".")}});
+        filled_page("make.html", {{"name", html_escaped(made.asset.name)},
+                                  {"style", std::string(page_part("make.css"))},
+                                  {"script", std::string(page_part("make.js"))},
+                                  {"figures", writer.figures()},
+                                  {"comparison", writer.comparison()},
+                                  {"command", html_escaped(command)},
+                                  {"findings", writer.findings()},
+                                  {"stages", writer.stages()},
+                                  {"loss", writer.loss()},
+                                  {"levels", writer.levels()},
+                                  {"maps", writer.maps()},
+                                  {"version", html_escaped("relief " + version() + ".")}});
     relief::detail::replace_file(file, std::as_bytes(std::span(page)));
 }
 

@@ -112,6 +112,23 @@ AssetPictures AssetScenes::draw(const make::Asset& made, const glm::ivec2& size)
     return pictures;
 }
 
+struct AssetDrawer::Implementation {
+    Context context;
+    RenderCache cache{context};
+};
+
+AssetDrawer::AssetDrawer() : implementation_(std::make_unique<Implementation>()) {}
+
+AssetDrawer::~AssetDrawer() = default;
+
+Image AssetDrawer::draw(const std::filesystem::path& asset, const glm::ivec2& size) {
+    const Scene scene = asset_scene(asset);
+    const ViewDirection view = best_view(world_surface(scene));
+    const float aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
+    const Camera camera = framed(scene, view.azimuth, view.elevation, default_vertical_fov, aspect);
+    return draw_picture(implementation_->cache, implementation_->context, scene, camera, size);
+}
+
 struct LossMeter::Implementation {
     Context context;
     Report of_source;

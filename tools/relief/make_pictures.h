@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Pictures of an asset and its source for the report page. OpenGL is loaded only by the
-/// constructors of AssetScenes and LossMeter.
+/// constructors of AssetScenes, AssetDrawer and LossMeter.
 /// Tests: tests/make/make_page_test.cpp.
 #pragma once
 
@@ -40,6 +40,22 @@ class AssetScenes {
 
     /// \param made  the content of the asset's file
     AssetPictures draw(const make::Asset& made, const glm::ivec2& size);
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+/// Draws written assets. \throws Error if nothing can be drawn
+class AssetDrawer {
+  public:
+    AssetDrawer();
+    ~AssetDrawer();
+    AssetDrawer(const AssetDrawer&) = delete;
+    AssetDrawer& operator=(const AssetDrawer&) = delete;
+
+    /// Draws the asset of a file from the direction that shows most of it.
+    Image draw(const std::filesystem::path& asset, const glm::ivec2& size);
 
   private:
     struct Implementation;
