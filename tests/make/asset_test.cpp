@@ -13,6 +13,7 @@
 
 #include "relief/mesh/gltf_document.h"
 #include "support/hard_meshes.h"
+#include "support/labels.h"
 #include "support/shapes.h"
 #include "tools/workplace.h"
 
@@ -260,6 +261,7 @@ TEST(MakeAssetInputs, AcceptsAnyUnitOfLength) {
 }
 
 // The catalog of hard cases: non-manifold, folded, needle-thin, huge, far away, ...
+TEST_LABELS(slow);
 TEST(MakeAssetInputs, EndsWellOnEveryHardMesh) {
     for (const test::NamedMesh& hard : test::hard_meshes()) {
         SCOPED_TRACE(hard.name);
