@@ -55,11 +55,12 @@ TEST(MakePage, HasTheMeasuredLoss) {
     workplace.write_square("out/square.obj");
     const std::string line =
         "relief make out/square.obj out/a.glb --size 32 --padding 2 --occlusion-rays 0 --loss";
-    ProgramResult result = workplace.run(line + " --report out/a.html");
+    ProgramResult result = workplace.run(line + " --max-error 1 --report out/a.html");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("FLIP, studio"));
     const std::string page = workplace.read("out/a.html");
     EXPECT_EQ(count_of(page, "<h2>What was lost</h2>"), 1U);
+    EXPECT_EQ(count_of(page, "; --max-error 1 held</li>"), 1U);
     for (const char* row : {"FLIP, studio", "FLIP, grazing", "FLIP, base-color", "normals, degrees",
                             "silhouettes, pixels"})
         EXPECT_EQ(count_of(page, std::string("<th scope=\"row\">") + row + "</th>"), 1U) << row;

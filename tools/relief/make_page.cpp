@@ -126,13 +126,18 @@ std::string PageWriter::loss() const {
             row.name, row.mean, row.p95 ? fmt::format("{:.4f}", *row.p95) : "–", row.worst,
             row.worst_view, row.floor);
     }
+    std::string attempts;
+    for (const std::string& line : limit_lines(request_.limits, made_.attempts))
+        attempts += "<li>" + html_escaped(line) + "</li>\n";
+    if (!attempts.empty()) attempts = "<p>Attempts:</p>\n<ol>\n" + attempts + "</ol>\n";
     return fmt::format(
         "<h2>What was lost</h2>\n<p>The source against the asset in {} views, {:.0f} pixels "
-        "across.</p>\n{}",
+        "across.</p>\n{}{}",
         made_.loss->views.size(), made_.loss->pixels_across,
         table("<th scope=\"col\">difference</th><th scope=\"col\">mean</th><th scope=\"col\">95 "
               "%</th><th scope=\"col\">worst view</th><th scope=\"col\">noise floor</th>",
-              rows));
+              rows),
+        attempts);
 }
 
 std::string PageWriter::levels() const {
