@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// BC7: encodes blocks with modes 5 and 6, and decodes all modes.
+// BC7: stores the encodings that bc7_search.cpp chooses, and decodes all modes.
 //
 // A block has up to three subsets of texels. The colors of a subset lie on a line between two
-// endpoints, and an index of 2 to 4 bits per texel selects one. In mode 6 all four channels share
-// an index of 4 bits; in modes 4 and 5 one channel has its own. Encoding fits a line to the exact
-// colors, rounds its endpoints, chooses indices, and fits again by least squares. Errors are
-// computed from the decoded integers. Source: [Khronos Data Format], section BPTC.
+// endpoints, and an index of 2 to 4 bits per texel selects one. In modes 4 and 5 one channel has
+// its own index. Source: [Khronos Data Format], section BPTC.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "image/bc7_format.h"
 #include "image/texel_loops.h"
 #include "parallel.h"
 #include "relief/mesh/block_compression.h"
@@ -22,7 +21,6 @@ using namespace relief::detail;
 
 namespace {
 
-constexpr std::size_t block_texels = 16;
 constexpr std::size_t block_size = 16;
 
 struct Bc7Mode {
@@ -46,15 +44,6 @@ unsigned weight_of(unsigned index, unsigned bits) {
     if (bits == 2) return weights_2[index];
     return bits == 3 ? weights_3[index] : weights_4[index];
 }
-
-/// Two subsets: bit t is the subset of texel t.
-constexpr std::uint16_t partitions_2[64] = {
-    0xCCCC, 0x8888, 0xEEEE, 0xECC8, 0xC880, 0xFEEC, 0xFEC8, 0xEC80, 0xC800, 0xFFEC, 0xFE80,
-    0xE800, 0xFFE8, 0xFF00, 0xFFF0, 0xF000, 0xF710, 0x008E, 0x7100, 0x08CE, 0x008C, 0x7310,
-    0x3100, 0x8CCE, 0x088C, 0x3110, 0x6666, 0x366C, 0x17E8, 0x0FF0, 0x718E, 0x399C, 0xAAAA,
-    0xF0F0, 0x5A5A, 0x33CC, 0x3C3C, 0x55AA, 0x9696, 0xA55A, 0x73CE, 0x13C8, 0x324C, 0x3BDC,
-    0x6996, 0xC33C, 0x9966, 0x0660, 0x0272, 0x04E4, 0x4E40, 0x2720, 0xC936, 0x936C, 0x39C6,
-    0x639C, 0x9336, 0x9CC6, 0x817E, 0xE718, 0xCCF0, 0x0FCC, 0x7744, 0xEE22};
 
 /// Three subsets: bits 2 t and 2 t + 1 are the subset of texel t.
 constexpr std::uint32_t partitions_3[64] = {
@@ -105,7 +94,7 @@ class BitReader {
 
 unsigned subset_of(unsigned subsets, unsigned partition, unsigned texel) {
     if (subsets == 1) return 0;
-    if (subsets == 2) return partitions_2[partition] >> texel & 1U;
+    if (subsets == 2) return bc7_partitions_2[partition] >> texel & 1U;
     return partitions_3[partition] >> (2 * texel) & 3U;
 }
 
@@ -128,7 +117,7 @@ unsigned color_between(unsigned first, unsigned second, unsigned weight) {
 }
 
 using BlockColor = std::array<std::uint8_t, 4>;
-using BlockColors = std::array<BlockColor, block_texels>;
+using BlockColors = std::array<BlockColor, bc7_texels>;
 
 BlockColors decode_bc7_block(const std::byte* block) {
     BlockColors colors{};
@@ -161,15 +150,15 @@ BlockColors decode_bc7_block(const std::byte* block) {
             endpoints[end][channel] = widened(endpoints[end][channel], all);
         }
     }
-    std::array<unsigned, block_texels> first{};
-    std::array<unsigned, block_texels> second{};
-    for (unsigned t = 0; t < block_texels; ++t)
+    std::array<unsigned, bc7_texels> first{};
+    std::array<unsigned, bc7_texels> second{};
+    for (unsigned t = 0; t < bc7_texels; ++t)
         first[t] = bits.read(mode.index_bits - (is_anchor(mode.subsets, partition, t) ? 1 : 0));
     if (mode.second_index_bits > 0) {
-        for (unsigned t = 0; t < block_texels; ++t)
+        for (unsigned t = 0; t < bc7_texels; ++t)
             second[t] = bits.read(mode.second_index_bits - (t == 0 ? 1 : 0));
     }
-    for (unsigned t = 0; t < block_texels; ++t) {
+    for (unsigned t = 0; t < bc7_texels; ++t) {
         const unsigned end = 2 * subset_of(mode.subsets, partition, t);
         const unsigned first_weight = weight_of(first[t], mode.index_bits);
         unsigned color_weight = first_weight;
@@ -189,13 +178,16 @@ BlockColors decode_bc7_block(const std::byte* block) {
     return colors;
 }
 
-// Encoding.
+// Storing.
 
 class BitWriter {
   public:
+    /// Writes the lowest `count` bits.
     void write(unsigned value, unsigned count) {
-        for (unsigned i = 0; i < count; ++i, ++next_)
-            words_[next_ / 64] |= static_cast<std::uint64_t>(value >> i & 1U) << (next_ % 64);
+        const std::uint64_t bits = value & ((1U << count) - 1U);
+        words_[next_ / 64] |= bits << (next_ % 64);
+        if (next_ % 64 + count > 64) words_[next_ / 64 + 1] |= bits >> (64 - next_ % 64);
+        next_ += count;
     }
     void store(std::byte* block) const {
         for (std::size_t i = 0; i < block_size; ++i)
@@ -204,239 +196,61 @@ class BitWriter {
 
   private:
     std::array<std::uint64_t, 2> words_{};
-    unsigned next_ = 0;
+    std::size_t next_ = 0;
 };
 
-using ColorPoint = std::array<float, 4>;
-
-/// The exact colors of a block, from 0 to 255.
-using BlockPoints = std::array<ColorPoint, block_texels>;
-
-/// A line between two endpoints, not rounded. Channels from `channels` on are not used.
-struct ColorLine {
-    ColorPoint first{}, second{};
-};
-
-/// Integer endpoints with their indices.
-struct LineCodes {
-    std::array<std::array<unsigned, 4>, 2> ends{};  ///< Without parity.
-    std::array<unsigned, 2> parity{};
-    std::array<unsigned, block_texels> index{};
-    std::array<float, block_texels> weight{};  ///< Of the second endpoint.
-    float error = 1e30F;
-};
-
-float clamped_code(float value) {
-    return value > 0.0F ? (value < 255.0F ? value : 255.0F) : 0.0F;
-}
-
-/// The line through the mean along the direction of largest variance, as long as the colors.
-template <std::size_t channels>
-ColorLine principal_line(const BlockPoints& points) {
-    ColorPoint mean{};
-    for (std::size_t c = 0; c < channels; ++c) {
-        for (const ColorPoint& point : points)
-            mean[c] += point[c];
-        mean[c] /= 16.0F;
+/// Swaps the endpoints of a subset, if the index of its anchor has its highest bit.
+void make_anchor_low(Bc7Encoding& encoding, std::size_t subset, std::size_t anchor, unsigned bits,
+                     unsigned index_bits) {
+    const auto last = static_cast<std::uint8_t>((1U << index_bits) - 1U);
+    if (encoding.index[anchor] <= last / 2) return;
+    const std::size_t end = 2 * subset;
+    if (encoding.mode == 5) {
+        // The last channel has its own index.
+        for (std::size_t c = 0; c < 3; ++c)
+            std::swap(encoding.ends[end][c], encoding.ends[end + 1][c]);
+    } else {
+        std::swap(encoding.ends[end], encoding.ends[end + 1]);
+        std::swap(encoding.parity[end], encoding.parity[end + 1]);
     }
-    float covariance[4][4] = {};
-    for (const ColorPoint& point : points) {
-        for (std::size_t a = 0; a < channels; ++a) {
-            for (std::size_t b = 0; b < channels; ++b)
-                covariance[a][b] += (point[a] - mean[a]) * (point[b] - mean[b]);
-        }
-    }
-    // Power iteration, from the row of the largest variance.
-    std::size_t largest = 0;
-    for (std::size_t c = 1; c < channels; ++c) {
-        if (covariance[c][c] > covariance[largest][largest]) largest = c;
-    }
-    ColorPoint axis{};
-    for (std::size_t c = 0; c < channels; ++c)
-        axis[c] = covariance[largest][c];
-    for (int round = 0; round < 6; ++round) {
-        ColorPoint next{};
-        float size = 0.0F;
-        for (std::size_t a = 0; a < channels; ++a) {
-            for (std::size_t b = 0; b < channels; ++b)
-                next[a] += covariance[a][b] * axis[b];
-            size = std::max(size, std::abs(next[a]));
-        }
-        if (!(size > 1e-12F)) break;
-        for (std::size_t c = 0; c < channels; ++c)
-            axis[c] = next[c] / size;
-    }
-    float squares = 0.0F;
-    for (std::size_t c = 0; c < channels; ++c)
-        squares += axis[c] * axis[c];
-    if (!(squares > 1e-12F)) return {mean, mean};
-    float least = 0.0F;
-    float greatest = 0.0F;
-    for (const ColorPoint& point : points) {
-        float along = 0.0F;
-        for (std::size_t c = 0; c < channels; ++c)
-            along += axis[c] * (point[c] - mean[c]);
-        along /= squares;
-        least = std::min(least, along);
-        greatest = std::max(greatest, along);
-    }
-    ColorLine line;
-    for (std::size_t c = 0; c < channels; ++c) {
-        line.first[c] = clamped_code(mean[c] + least * axis[c]);
-        line.second[c] = clamped_code(mean[c] + greatest * axis[c]);
-    }
-    return line;
-}
-
-/// Chooses the index of each texel, and computes the squared error. The colors of a line are nearly
-/// evenly spaced: of more than 4, only the one at the projection of a texel and its neighbors are
-/// compared. Measured errors are the same in three digits as with all colors.
-template <std::size_t channels, std::size_t levels>
-void choose_indices(const BlockPoints& points, const std::array<std::array<unsigned, 4>, 2>& ends,
-                    const std::array<std::uint8_t, levels>& weights, LineCodes& codes) {
-    std::array<ColorPoint, levels> palette{};
-    for (std::size_t i = 0; i < levels; ++i) {
-        for (std::size_t c = 0; c < channels; ++c)
-            palette[i][c] = static_cast<float>(color_between(ends[0][c], ends[1][c], weights[i]));
-    }
-    ColorPoint direction{};
-    float squares = 0.0F;
-    for (std::size_t c = 0; c < channels; ++c) {
-        direction[c] = palette[levels - 1][c] - palette[0][c];
-        squares += direction[c] * direction[c];
-    }
-    const float scale = squares > 0.0F ? (static_cast<float>(levels) - 1.0F) / squares : 0.0F;
-    codes.error = 0.0F;
-    for (std::size_t t = 0; t < block_texels; ++t) {
-        const ColorPoint& point = points[t];
-        unsigned begin = 0;
-        unsigned end = levels;
-        if constexpr (levels > 4) {
-            float along = 0.0F;
-            for (std::size_t c = 0; c < channels; ++c)
-                along += direction[c] * (point[c] - palette[0][c]);
-            const float place = std::clamp(along * scale, 0.0F, static_cast<float>(levels - 1));
-            const auto nearest = static_cast<unsigned>(place + 0.5F);
-            begin = nearest > 0 ? nearest - 1 : 0;
-            end = std::min<unsigned>(nearest + 2, levels);
-        }
-        unsigned best = begin;
-        float least = 1e30F;
-        for (unsigned i = begin; i < end; ++i) {
-            float error = 0.0F;
-            for (std::size_t c = 0; c < channels; ++c) {
-                const float difference = point[c] - palette[i][c];
-                error += difference * difference;
-            }
-            if (error < least) {
-                least = error;
-                best = i;
-            }
-        }
-        codes.index[t] = best;
-        codes.weight[t] = static_cast<float>(weights[best]) / 64.0F;
-        codes.error += least;
+    for (std::size_t t = 0; t < bc7_texels; ++t) {
+        if ((bits >> t & 1U) == subset)
+            encoding.index[t] = static_cast<std::uint8_t>(last - encoding.index[t]);
     }
 }
 
-/// The endpoints that are best for the indices, by least squares.
-template <std::size_t channels>
-ColorLine refitted(const BlockPoints& points, const LineCodes& codes, const ColorLine& line) {
-    float first_squares = 0.0F;
-    float products = 0.0F;
-    float second_squares = 0.0F;
-    ColorPoint first_sum{}, second_sum{};
-    for (std::size_t t = 0; t < block_texels; ++t) {
-        const float second = codes.weight[t];
-        const float first = 1.0F - second;
-        first_squares += first * first;
-        products += first * second;
-        second_squares += second * second;
-        for (std::size_t c = 0; c < channels; ++c) {
-            first_sum[c] += first * points[t][c];
-            second_sum[c] += second * points[t][c];
-        }
+void store_encoding(Bc7Encoding encoding, std::byte* block) {
+    const Bc7Mode& mode = bc7_modes[encoding.mode];
+    const unsigned bits = mode.subsets == 2 ? bc7_partitions_2[encoding.partition] : 0;
+    make_anchor_low(encoding, 0, 0, bits, mode.index_bits);
+    if (mode.subsets == 2)
+        make_anchor_low(encoding, 1, anchors_2[encoding.partition], bits, mode.index_bits);
+    if (mode.second_index_bits > 0 && encoding.second_index[0] > 1) {
+        std::swap(encoding.ends[0][3], encoding.ends[1][3]);
+        for (std::uint8_t& index : encoding.second_index)
+            index = static_cast<std::uint8_t>(3 - index);
     }
-    const float determinant = first_squares * second_squares - products * products;
-    if (!(determinant > 1e-3F)) return line;
-    ColorLine result;
-    for (std::size_t c = 0; c < channels; ++c) {
-        result.first[c] =
-            clamped_code((second_squares * first_sum[c] - products * second_sum[c]) / determinant);
-        result.second[c] =
-            clamped_code((first_squares * second_sum[c] - products * first_sum[c]) / determinant);
-    }
-    return result;
-}
-
-/// Rounds an endpoint to 8 bits of which the lowest is `parity` in all channels.
-std::array<unsigned, 4> rounded_with_parity(const ColorPoint& point, unsigned parity) {
-    std::array<unsigned, 4> codes{};
+    BitWriter writer;
+    writer.write(1U << encoding.mode, encoding.mode + 1);
+    writer.write(encoding.partition, mode.partition_bits);
+    writer.write(encoding.rotation, mode.rotation_bits);
+    const std::size_t ends = 2 * std::size_t{mode.subsets};
     for (std::size_t c = 0; c < 4; ++c) {
-        const float half = (point[c] - static_cast<float>(parity)) / 2.0F + 0.5F;
-        codes[c] = static_cast<unsigned>(std::clamp(static_cast<int>(half), 0, 127));
+        const unsigned count = c < 3 ? mode.color_bits : mode.alpha_bits;
+        for (std::size_t end = 0; end < ends && count > 0; ++end)
+            writer.write(encoding.ends[end][c], count);
     }
-    return codes;
-}
-
-int rounds_of(BlockQuality quality) {
-    if (quality == BlockQuality::fast) return 1;
-    return quality == BlockQuality::normal ? 3 : 6;
-}
-
-LineCodes encode_mode_6(const BlockPoints& points, BlockQuality quality) {
-    ColorLine line = principal_line<4>(points);
-    LineCodes best;
-    const int rounds = rounds_of(quality);
-    for (int round = 0; round < rounds; ++round) {
-        LineCodes best_of_round;
-        for (unsigned parities = 0; parities < 4; ++parities) {
-            LineCodes codes;
-            codes.parity = {parities & 1U, parities >> 1U};
-            codes.ends = {rounded_with_parity(line.first, codes.parity[0]),
-                          rounded_with_parity(line.second, codes.parity[1])};
-            auto ends = codes.ends;
-            for (std::size_t end = 0; end < 2; ++end) {
-                for (unsigned& code : ends[end])
-                    code = code << 1U | codes.parity[end];
-            }
-            choose_indices<4>(points, ends, weights_4, codes);
-            if (codes.error < best_of_round.error) best_of_round = codes;
-        }
-        if (best_of_round.error < best.error) best = best_of_round;
-        line = refitted<4>(points, best_of_round, line);
+    for (std::size_t end = 0; end < ends; ++end) {
+        const bool is_stored = end % 2 == 0 && mode.subset_parity > 0;
+        if (mode.endpoint_parity > 0 || is_stored) writer.write(encoding.parity[end], 1);
     }
-    return best;
-}
-
-/// Rounds an endpoint of mode 5: colors have 7 bits, a single channel has 8.
-std::array<unsigned, 4> rounded_to(const ColorPoint& point, std::size_t channels) {
-    std::array<unsigned, 4> codes{};
-    const float scale = channels == 1 ? 1.0F : 127.0F / 255.0F;
-    for (std::size_t c = 0; c < channels; ++c)
-        codes[c] = static_cast<unsigned>(point[c] * scale + 0.5F);
-    return codes;
-}
-
-/// Fits a line of mode 5: three color channels, or one.
-template <std::size_t channels>
-LineCodes encode_mode_5_line(const BlockPoints& points, BlockQuality quality) {
-    ColorLine line = principal_line<channels>(points);
-    LineCodes best;
-    const int rounds = rounds_of(quality);
-    for (int round = 0; round < rounds; ++round) {
-        LineCodes codes;
-        codes.ends = {rounded_to(line.first, channels), rounded_to(line.second, channels)};
-        auto ends = codes.ends;
-        for (auto& end : ends) {
-            for (std::size_t c = 0; c < channels; ++c)
-                end[c] = channels == 1 ? end[c] : widened(end[c], 7);
-        }
-        choose_indices<channels>(points, ends, weights_2, codes);
-        if (codes.error < best.error) best = codes;
-        line = refitted<channels>(points, codes, line);
+    for (unsigned t = 0; t < bc7_texels; ++t) {
+        const bool anchor = is_anchor(mode.subsets, encoding.partition, t);
+        writer.write(encoding.index[t], mode.index_bits - (anchor ? 1U : 0U));
     }
-    return best;
+    for (std::size_t t = 0; t < bc7_texels && mode.second_index_bits > 0; ++t)
+        writer.write(encoding.second_index[t], t == 0 ? 1 : 2);
+    writer.store(block);
 }
 
 /// For each code of 8 bits, two codes of 7 bits such that the weight 21 gives it exactly.
@@ -456,84 +270,27 @@ struct ExactCodes {
 };
 constexpr ExactCodes exact_codes;
 
-/// The endpoints and indices of a line as they are stored, with index 0 in the lower half.
-void make_storable(LineCodes& codes, unsigned levels) {
-    if (codes.index[0] < levels / 2) return;
-    std::swap(codes.ends[0], codes.ends[1]);
-    std::swap(codes.parity[0], codes.parity[1]);
-    for (unsigned& index : codes.index)
-        index = levels - 1 - index;
-}
-
-void store_mode_6(LineCodes codes, std::byte* block) {
-    make_storable(codes, 16);
-    BitWriter bits;
-    bits.write(1U << 6U, 7);
+/// Replaces the encoding for a block whose texels all have the same color, rounded to 8 bits.
+void use_single_color(const Bc7Colors& colors, std::size_t lane, Bc7Encoding& encoding) {
     for (std::size_t c = 0; c < 4; ++c) {
-        for (const auto& end : codes.ends)
-            bits.write(end[c], 7);
-    }
-    for (const unsigned parity : codes.parity)
-        bits.write(parity, 1);
-    for (std::size_t t = 0; t < block_texels; ++t)
-        bits.write(codes.index[t], t == 0 ? 3 : 4);
-    bits.store(block);
-}
-
-void store_mode_5(LineCodes color, LineCodes single, unsigned rotation, std::byte* block) {
-    make_storable(color, 4);
-    make_storable(single, 4);
-    BitWriter bits;
-    bits.write(1U << 5U, 6);
-    bits.write(rotation, 2);
-    for (std::size_t c = 0; c < 3; ++c) {
-        for (const auto& end : color.ends)
-            bits.write(end[c], 7);
-    }
-    for (const auto& end : single.ends)
-        bits.write(end[0], 8);
-    for (const LineCodes& line : {color, single}) {
-        for (std::size_t t = 0; t < block_texels; ++t)
-            bits.write(line.index[t], t == 0 ? 1 : 2);
-    }
-    bits.store(block);
-}
-
-/// A block whose texels all have the same color, rounded to 8 bits.
-void store_single_color(const ColorPoint& point, std::byte* block) {
-    LineCodes color, single;
-    for (std::size_t c = 0; c < 3; ++c) {
-        const auto& pair = exact_codes.pair[static_cast<std::size_t>(point[c] + 0.5F)];
-        color.ends[0][c] = pair[0];
-        color.ends[1][c] = pair[1];
-    }
-    color.index.fill(1);
-    single.ends[0][0] = single.ends[1][0] = static_cast<unsigned>(point[3] + 0.5F);
-    store_mode_5(color, single, 0, block);
-}
-
-void encode_bc7_block(const BlockPoints& points, BlockQuality quality, std::byte* block) {
-    const bool is_single = std::all_of(points.begin(), points.end(),
-                                       [&](const ColorPoint& point) { return point == points[0]; });
-    if (is_single) return store_single_color(points[0], block);
-    const LineCodes mode_6 = encode_mode_6(points, quality);
-    float best_error = mode_6.error;
-    store_mode_6(mode_6, block);
-    if (quality == BlockQuality::fast) return;
-    for (unsigned rotation = 0; rotation < 4; ++rotation) {
-        BlockPoints rotated = points;
-        BlockPoints alone{};
-        for (std::size_t t = 0; t < block_texels; ++t) {
-            if (rotation > 0) std::swap(rotated[t][3], rotated[t][rotation - 1]);
-            alone[t][0] = rotated[t][3];
+        for (std::size_t t = 1; t < bc7_texels; ++t) {
+            if (colors.channel[c][t][lane] != colors.channel[c][0][lane]) return;
         }
-        const LineCodes single = encode_mode_5_line<1>(alone, quality);
-        if (single.error >= best_error) continue;
-        const LineCodes color = encode_mode_5_line<3>(rotated, quality);
-        if (color.error + single.error >= best_error) continue;
-        best_error = color.error + single.error;
-        store_mode_5(color, single, rotation, block);
     }
+    encoding = Bc7Encoding{};
+    encoding.mode = 5;
+    for (std::size_t c = 0; c < 4; ++c) {
+        const auto code = static_cast<std::size_t>(colors.channel[c][0][lane] + 0.5F);
+        const bool is_color = c < 3;
+        const auto same = static_cast<std::uint8_t>(code);
+        encoding.ends[0][c] = is_color ? exact_codes.pair[code][0] : same;
+        encoding.ends[1][c] = is_color ? exact_codes.pair[code][1] : same;
+    }
+    encoding.index.fill(1);
+}
+
+float clamped_code(float value) {
+    return value > 0.0F ? (value < 255.0F ? value : 255.0F) : 0.0F;
 }
 
 /// Returns a sample in codes of 8 bits, clamped; 0 if it is not finite.
@@ -548,40 +305,50 @@ float exact_code(Sample sample, bool& is_finite) {
     }
 }
 
+/// Loads a block into a lane.
+template <typename Sample>
+void load_block(const ImageView& image, std::size_t row, std::size_t column, std::size_t lane,
+                Bc7Colors& colors, Report& report) {
+    for (std::size_t t = 0; t < bc7_texels; ++t) {
+        const int place_x = static_cast<int>(4 * column + t % 4);
+        const int place_y = static_cast<int>(4 * row + t / 4);
+        const int x = std::min(place_x, image.width - 1);
+        const int y = std::min(place_y, image.height - 1);
+        const Sample* const sample =
+            image.row<Sample>(y) + static_cast<std::ptrdiff_t>(x) * image.channels;
+        colors.channel[3][t][lane] = 255.0F;
+        bool all_finite = true;
+        for (int c = 0; c < image.channels; ++c) {
+            bool is_finite = true;
+            colors.channel[static_cast<std::size_t>(c)][t][lane] = exact_code(sample[c], is_finite);
+            all_finite = all_finite && is_finite;
+        }
+        if (!all_finite && x == place_x && y == place_y) {
+            report.add("sample that is not finite", "texel",
+                       static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                           static_cast<std::size_t>(x),
+                       "stored as 0");
+        }
+    }
+}
+
 template <typename Sample>
 void encode_bc7_rows(const ImageView& image, BlockQuality quality, std::size_t begin,
                      std::size_t end, std::vector<std::byte>& blocks, Report& report) {
-    const int columns = (image.width + 3) / 4;
-    const int last_x = image.width - 1;
-    const int last_y = image.height - 1;
+    const std::size_t columns = (static_cast<std::size_t>(image.width) + 3) / 4;
+    Bc7Colors colors{};
     for (std::size_t row = begin; row < end; ++row) {
-        for (int column = 0; column < columns; ++column) {
-            BlockPoints points;
-            for (int t = 0; t < 16; ++t) {
-                const int place_x = 4 * column + t % 4;
-                const int place_y = 4 * static_cast<int>(row) + t / 4;
-                const int x = std::min(place_x, last_x);
-                const int y = std::min(place_y, last_y);
-                const Sample* const sample =
-                    image.row<Sample>(y) + static_cast<std::ptrdiff_t>(x) * image.channels;
-                ColorPoint& point = points[static_cast<std::size_t>(t)];
-                point[3] = 255.0F;
-                bool all_finite = true;
-                for (int c = 0; c < image.channels; ++c) {
-                    bool is_finite = true;
-                    point[static_cast<std::size_t>(c)] = exact_code(sample[c], is_finite);
-                    all_finite = all_finite && is_finite;
-                }
-                if (!all_finite && x == place_x && y == place_y) {
-                    report.add("sample that is not finite", "texel",
-                               static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                                   static_cast<std::size_t>(x),
-                               "stored as 0");
-                }
+        for (std::size_t first = 0; first < columns; first += bc7_lanes) {
+            colors.count = std::min(bc7_lanes, columns - first);
+            for (std::size_t lane = 0; lane < colors.count; ++lane)
+                load_block<Sample>(image, row, first + lane, lane, colors, report);
+            Bc7Encodings encodings;
+            choose_bc7_encodings(colors, quality, encodings);
+            for (std::size_t lane = 0; lane < colors.count; ++lane) {
+                use_single_color(colors, lane, encodings[lane]);
+                store_encoding(encodings[lane],
+                               &blocks[(row * columns + first + lane) * block_size]);
             }
-            const std::size_t index =
-                row * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
-            encode_bc7_block(points, quality, &blocks[index * block_size]);
         }
     }
 }
@@ -620,7 +387,7 @@ Image decode_bc7(std::span<const std::byte> blocks, int width, int height) {
             const std::size_t first_x = i % block_columns * 4;
             const std::size_t first_y = i / block_columns * 4;
             const BlockColors colors = decode_bc7_block(&blocks[i * block_size]);
-            for (std::size_t t = 0; t < block_texels; ++t) {
+            for (std::size_t t = 0; t < bc7_texels; ++t) {
                 const std::size_t x = first_x + t % 4;
                 const std::size_t y = first_y + t / 4;
                 if (x >= columns || y >= rows) continue;
