@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Most meshes have no stacks, so a bit for each hash of a triangle finds the few candidates first;
-// only these are sorted.
+// Most meshes have no stacks, so a bit for each hash of a triangle at its lowest position finds the
+// candidates first, about one in thirty triangles; only these are sorted.
 #include "geometry/triangle_stacks.h"
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <numeric>
 
@@ -17,35 +16,28 @@ namespace {
 /// The positions of a triangle, ascending.
 using Key = std::array<std::uint32_t, 3>;
 
+/// A set of keys that can report keys that it does not have: 64 bits for each lowest position. The
+/// triangles of a mesh are mostly in an order in which these are close to each other in memory.
 class KeyBits {
   public:
-    explicit KeyBits(std::size_t triangles)
-        : shift_(64U - static_cast<unsigned>(
-                           std::bit_width(std::max<std::size_t>(16 * triangles, 64) - 1))),
-          words_(((std::size_t(1) << (64U - shift_)) + 63) / 64, 0) {}
+    explicit KeyBits(std::size_t positions) : words_(positions, 0) {}
 
     /// \return whether the bit of the key was set before
     bool set(const Key& key) {
-        const std::uint64_t at = index(key);
-        const std::uint64_t bit = std::uint64_t(1) << (at % 64);
-        const bool was_set = (words_[at / 64] & bit) != 0;
-        words_[at / 64] |= bit;
+        std::uint64_t& word = words_[key[0]];
+        const bool was_set = (word & bit(key)) != 0;
+        word |= bit(key);
         return was_set;
     }
-    [[nodiscard]] bool has(const Key& key) const {
-        const std::uint64_t at = index(key);
-        return (words_[at / 64] >> (at % 64) & 1U) != 0;
-    }
+    [[nodiscard]] bool has(const Key& key) const { return (words_[key[0]] & bit(key)) != 0; }
 
   private:
-    [[nodiscard]] std::uint64_t index(const Key& key) const {
-        std::uint64_t hash = key[0] * 0x9E3779B97F4A7C15ULL;
-        hash = (hash ^ (hash >> 32) ^ key[1]) * 0xBF58476D1CE4E5B9ULL;
+    static std::uint64_t bit(const Key& key) {
+        std::uint64_t hash = key[1] * 0xBF58476D1CE4E5B9ULL;
         hash = (hash ^ (hash >> 29) ^ key[2]) * 0x94D049BB133111EBULL;
-        return hash >> shift_;
+        return std::uint64_t{1} << (hash >> 58U);
     }
 
-    unsigned shift_;
     std::vector<std::uint64_t> words_;
 };
 
@@ -62,8 +54,11 @@ std::vector<std::uint32_t> triangle_stacks(TriangleSpan triangles,
         if (key[0] > key[1]) std::swap(key[0], key[1]);
         return key;
     };
-    KeyBits seen(triangles.size());
-    KeyBits seen_twice(triangles.size());
+    std::size_t positions = classes.size();
+    for (std::size_t t = 0; classes.empty() && t < triangles.size(); ++t)
+        positions = std::max(positions, std::size_t{key_of(t)[2]} + 1);
+    KeyBits seen(positions);
+    KeyBits seen_twice(positions);
     bool has_candidates = false;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         check_cancelled(t);
