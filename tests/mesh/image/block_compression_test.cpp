@@ -657,6 +657,22 @@ TEST(Bc7Encoder, BlocksDecodeWithTheErrorThatTheSearchComputes) {
     }
 }
 
+TEST(Bc7Encoder, NoBlockHasALargerErrorWithABetterQuality) {
+    std::array<int, 8> modes{};
+    for (const bool has_alpha : {false, true}) {
+        const Image image = mixed_colors(has_alpha);
+        for (std::size_t row = 0; row < 3; ++row) {
+            const auto fast = predicted_errors(image, row, BlockQuality::fast, modes);
+            const auto normal = predicted_errors(image, row, BlockQuality::normal, modes);
+            const auto best = predicted_errors(image, row, BlockQuality::best, modes);
+            for (std::size_t block = 0; block < 128; ++block) {
+                EXPECT_LE(normal[block], fast[block]) << "row " << row << ", block " << block;
+                EXPECT_LE(best[block], normal[block]) << "row " << row << ", block " << block;
+            }
+        }
+    }
+}
+
 TEST(Bc7Encoder, ColorsOnTwoLinesHaveSmallErrorsInEachPartition) {
     for (const bool has_alpha : {false, true}) {
         const Image image = part_of(mixed_colors(has_alpha), {0, 8, 512, 4});

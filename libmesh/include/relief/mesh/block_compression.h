@@ -118,8 +118,9 @@ std::vector<std::byte> encode_normal_blocks(const ImageView& normals,
 /// Source: [Khronos Data Format].
 Image decode_blocks(std::span<const std::byte> blocks, BlockFormat format, int width, int height);
 
-/// encode_blocks() for BC7. It uses mode 6, in which all channels share their indices, and mode 5,
-/// in which one channel has its own.
+/// encode_blocks() for BC7. It uses mode 6, in which all channels share their indices, mode 5, in
+/// which one channel has its own, and partitions into two subsets: modes 1 and 3 for opaque colors,
+/// mode 7 for others. `fast` uses only modes 1 and 6, and one color in mode 5.
 std::vector<std::byte> encode_bc7(const ImageView& image, BlockQuality quality,
                                   Report& report = IgnoredReport());
 
