@@ -162,6 +162,7 @@ std::vector<std::string> commands_in_plain_blocks(const std::string& page) {
             in_block = !in_block;
             is_plain = in_block && text == "```";
         } else if (is_plain && starts_with_any(text, {"relief ", "relief-"}) &&
+                   text.find(' ') != std::string::npos &&
                    text.find(": error:") == std::string::npos) {
             commands.push_back(text);
         }

@@ -38,13 +38,13 @@ TEST(LossLimits, ApplyToThePrintedFigures) {
     loss.normals.mean = 2.00004;
     loss.pictures[1].mean = 0.09;
     LossLimits limits;
-    limits.degrees = 2.0;
+    limits.normals = {2.0, ErrorKind::mean};
     EXPECT_FALSE(attempt_of(loss, limits, 100, {64, 64}).exceeded) << "2.0000 is printed";
     limits.flip = 0.05;
     const LimitAttempt attempt = attempt_of(loss, limits, 100, {64, 64});
     EXPECT_EQ(attempt.exceeded, LossLimit::flip);
     EXPECT_DOUBLE_EQ(attempt.ratio, 0.09 / 0.05);
-    limits.degrees = 0.5;
+    limits.normals.degrees = 0.5;
     EXPECT_EQ(attempt_of(loss, limits, 100, {64, 64}).exceeded, LossLimit::degrees);
 }
 
@@ -92,7 +92,8 @@ TEST(MakeLimits, ChooseTrianglesAndMapsThatHoldThem) {
     const Workplace workplace;
     write_rippled_sphere(workplace, "out/ball.obj");
     const std::string line = std::string("relief make out/ball.obj -o out/ball.glb") + coarse;
-    const ProgramResult result = workplace.run(line + " --max-error 3 --report out/ball.json");
+    const ProgramResult result =
+        workplace.run(line + " --max-error 3 --max-error-kind mean --report out/ball.json");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("--max-error 3 held"));
     EXPECT_THAT(result.out, HasSubstr("more than --max-error; next twice the "));
@@ -108,7 +109,8 @@ TEST(MakeLimits, ChooseTrianglesAndMapsThatHoldThem) {
     EXPECT_NEAR(report["triangles"].get<double>(), last["triangles"].get<double>(), 2.0);
     // Each stage is listed once, with the time of all attempts.
     EXPECT_EQ(report["stages"].size(), 9U);
-    EXPECT_THAT(report["command"].get<std::string>(), HasSubstr(" --max-error 3"));
+    EXPECT_THAT(report["command"].get<std::string>(),
+                HasSubstr(" --max-error 3 --max-error-kind mean"));
 }
 
 TEST_LABELS(slow, not_sanitized);

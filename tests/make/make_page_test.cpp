@@ -55,7 +55,8 @@ TEST(MakePage, HasTheMeasuredLoss) {
     workplace.write_square("out/square.obj");
     const std::string line =
         "relief make out/square.obj out/a.glb --size 32 --padding 2 --occlusion-rays 0 --loss";
-    ProgramResult result = workplace.run(line + " --max-error 1 --report out/a.html");
+    ProgramResult result =
+        workplace.run(line + " --max-error 1 --max-error-kind mean --report out/a.html");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("FLIP, studio"));
     const std::string page = workplace.read("out/a.html");
@@ -66,7 +67,7 @@ TEST(MakePage, HasTheMeasuredLoss) {
         EXPECT_EQ(count_of(page, std::string("<th scope=\"row\">") + row + "</th>"), 1U) << row;
     // The asset of a square is the same square, also in its color. The codes of its normal map are
     // 0.32 degrees from flat.
-    result = workplace.run(line + " --max-error 1 --report out/a.json");
+    result = workplace.run(line + " --max-error 1 --max-error-kind mean --report out/a.json");
     const nlohmann::json report = nlohmann::json::parse(workplace.read("out/a.json"));
     EXPECT_EQ(report["limits"]["attempts"].size(), 1U);
     const nlohmann::json& loss = report["loss"];

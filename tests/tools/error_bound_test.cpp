@@ -74,7 +74,7 @@ TEST(MaxError, HasOneMeaningInAllCommands) {
             EXPECT_THAT(page, HasSubstr("--max-error E Maximum distance")) << command;
         }
     }
-    EXPECT_EQ(of_angles, 5);     // bump, mesh, check, convert and own
+    EXPECT_EQ(of_angles, 7);     // bump, mesh, check, convert, own, fidelity and make
     EXPECT_EQ(of_distances, 1);  // decimate
 }
 

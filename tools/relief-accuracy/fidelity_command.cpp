@@ -15,6 +15,7 @@
 
 #include "commands.h"
 #include "common/command.h"
+#include "common/error_bound.h"
 #include "common/options.h"
 #include "common/summary.h"
 #include "common/text.h"
@@ -32,7 +33,7 @@ struct FidelityRequest {
     std::filesystem::path source;
     std::vector<std::filesystem::path> results;
     FidelityOptions how;
-    std::optional<double> max_degrees;
+    ErrorBound max_error;
     std::optional<double> max_flip;
     std::optional<std::filesystem::path> pictures;
     ReportOptions report;
@@ -157,6 +158,8 @@ std::vector<std::string> stage_lines(const MeasuredStage& stage, const MeasuredC
         row_format, "95 % of the pixels", fmt::format("{:.4f}", loss.pictures[0].p95),
         fmt::format("{:.4f}", loss.pictures[1].p95), fmt::format("{:.4f}", loss.pictures[2].p95),
         fmt::format("{:.3f}", loss.normals.p95), ""));
+    lines.push_back(fmt::format(row_format, "99 % of the pixels", "", "", "",
+                                fmt::format("{:.3f}", loss.normals.p99), ""));
     lines.push_back(row("noise floor (mean)", flip_of(loss, &PictureLoss::floor),
                         loss.normals.floor, loss.silhouettes.floor));
     for (const std::size_t view : worst_first(loss)) {
@@ -207,7 +210,9 @@ Json json_of(const MeasuredStage& stage) {
             {"studio_mean_on_black", loss.studio_mean_on_black},
             {"normals",
              {{"mean", loss.normals.mean},
+              {"rms", loss.normals.rms},
               {"p95", loss.normals.p95},
+              {"p99", loss.normals.p99},
               {"max", loss.normals.max},
               {"worst", json_of(loss.normals.worst)},
               {"floor", loss.normals.floor},
@@ -249,7 +254,8 @@ Summary summary_of(const FidelityRequest& request, const MeasuredChain& chain) {
     }
     summary.add_json(
         {{"stages", json_list(chain.stages, [](const auto& stage) { return json_of(stage); })},
-         {"max_error", or_null(request.max_degrees)},
+         {"max_error", or_null(request.max_error.degrees)},
+         {"max_error_kind", enum_name(request.max_error.statistic())},
          {"max_picture_error", or_null(request.max_flip)}});
     summary.add_findings(chain.findings);
     return summary;
@@ -288,9 +294,11 @@ void write_pictures(const std::filesystem::path& folder, const MeasuredChain& ch
 /// Returns what exceeds the limits, which apply to the last stage; empty: nothing.
 std::string above_limits(const FidelityRequest& request, const MeasuredStage& last) {
     std::string text;
-    if (request.max_degrees && last.loss.normals.p95 > *request.max_degrees) {
-        text = fmt::format("normals differ by {:.3f} degrees (95 %), and --max-error allows {:g}",
-                           last.loss.normals.p95, *request.max_degrees);
+    const double degrees = last.loss.normals.error(request.max_error.statistic());
+    if (request.max_error.degrees && degrees > *request.max_error.degrees) {
+        text = fmt::format("normals differ by {:.3f} degrees ({}), and --max-error allows {:g}",
+                           degrees, statistic_name(request.max_error.statistic()),
+                           *request.max_error.degrees);
     }
     const double flip = last.loss.max_picture_mean();
     if (request.max_flip && flip > *request.max_flip) {
@@ -351,9 +359,9 @@ void add_options(CLI::App& app, FidelityRequest& request) {
              "difference (FLIP) side by side.")
         .group(pictures);
     const char* verdict = "Verdict, on the last result";
-    add_number(app, "--max-error", "DEG", request.max_degrees, {0.0, 180.0, "degrees"},
-               "Exit with 1 if normals differ by more at over 5 % of the pixels.")
-        .group(verdict);
+    add_error_bound(app, request.max_error, verdict,
+                    "Exit with 1 if the angle between normals is larger at more than 1 % of the "
+                    "pixels.");
     add_number(app, "--max-picture-error", "FLIP", request.max_flip, {0.0, 1.0, ""},
                "Exit with 1 if the mean difference of pictures is larger with one of the lights.")
         .group(verdict);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "common/error_bound.h"
 #include "common/file_jobs.h"
 #include "common/model_file.h"
 #include "common/options.h"
@@ -85,7 +86,8 @@ Json options_json(const MakeCommand& command) {
                  {"lods", asset.levels},
                  {"for", enum_name(command.request.engine)}};
     json["loss"] = command.request.measures_loss;
-    json["max_error"] = or_null(command.request.limits.degrees);
+    json["max_error"] = or_null(command.request.limits.normals.degrees);
+    json["max_error_kind"] = enum_name(command.request.limits.normals.statistic());
     json["max_picture_error"] = or_null(command.request.limits.flip);
     json["crease"] = nullptr;
     if (asset.crease_angle) json["crease"] = *asset.crease_angle * 180.0 / std::numbers::pi;
@@ -110,7 +112,9 @@ std::string repeating_line(const MakeCommand& command, const Job& job) {
     if (asset.keep_texcoords) line += " --keep-uvs";
     if (command.request.measures_loss) line += " --loss";
     const LossLimits& limits = command.request.limits;
-    if (limits.degrees) line += fmt::format(" --max-error {}", *limits.degrees);
+    if (limits.normals.degrees) line += fmt::format(" --max-error {}", *limits.normals.degrees);
+    if (limits.normals.kind)
+        line += fmt::format(" --max-error-kind {}", enum_name(*limits.normals.kind));
     if (limits.flip) line += fmt::format(" --max-picture-error {}", *limits.flip);
     line += fmt::format(" --samples {} --occlusion-rays {} --lods {} --for {}", asset.samples,
                         asset.occlusion ? asset.occlusion_rays : 0, asset.levels,
@@ -308,12 +312,12 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
         "each asset, worst first.")
         .group(output);
     LossLimits& limits = command.request.limits;
-    add_number(app, "--max-error", "DEGREES", limits.degrees, {1e-4, 180.0, "degrees"},
-               "The largest mean angle between normals of the source and the asset, as --loss "
-               "prints it. The asset gets more triangles, up to those of the source, or larger "
-               "maps, up to 8192, from --triangles and --size on, in at most 6 attempts. If the "
-               "limit does not hold then, nothing is written.")
-        .group(output);
+    add_error_bound(app, limits.normals, output,
+                    "The largest angle between normals of the source and the asset, which 99 % of "
+                    "the pixels of --loss do not exceed. The asset gets more triangles, up to "
+                    "those of the source, or larger maps, up to 8192, from --triangles and --size "
+                    "on, in at most 6 attempts. If the limit does not hold then, nothing is "
+                    "written.");
     add_number(app, "--max-picture-error", "FLIP", limits.flip, {1e-4, 1.0, ""},
                "The same for the largest mean FLIP of the three lights. Both limits can be given.")
         .group(output);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "relief/mesh/enum_names.h"
 
@@ -51,15 +52,16 @@ Growth wanted_growth(const std::vector<LimitAttempt>& attempts) {
     return last.silhouettes > wide_silhouettes ? Growth::triangles : Growth::size;
 }
 
-std::string figures_of(const LimitAttempt& attempt) {
-    return fmt::format("{} and maps of {} x {}: {:.4f} degrees, FLIP {:.4f}",
+std::string figures_of(const LossLimits& limits, const LimitAttempt& attempt) {
+    return fmt::format("{} and maps of {} x {}: {:.4f} degrees ({}), FLIP {:.4f}",
                        counted(attempt.triangles, "triangle"), attempt.size.x, attempt.size.y,
-                       attempt.degrees, attempt.flip);
+                       attempt.degrees, statistic_name(limits.normals.statistic()), attempt.flip);
 }
 
 std::string text_of(const LossLimits& limits) {
     std::vector<std::string> texts;
-    if (limits.degrees) texts.push_back(fmt::format("--max-error {:g}", *limits.degrees));
+    if (limits.normals.degrees)
+        texts.push_back(fmt::format("--max-error {:g}", *limits.normals.degrees));
     if (limits.flip) texts.push_back(fmt::format("--max-picture-error {:g}", *limits.flip));
     return fmt::format("{}", fmt::join(texts, " and "));
 }
@@ -71,16 +73,18 @@ LimitAttempt attempt_of(const shade::Fidelity& loss, const LossLimits& limits,
     LimitAttempt attempt;
     attempt.triangles = triangles;
     attempt.size = size;
-    attempt.degrees = printed(loss.normals.mean);
+    attempt.degrees = printed(loss.normals.error(limits.normals.statistic()));
     attempt.flip = printed(loss.max_picture_mean());
     attempt.silhouettes = loss.silhouettes.width;
     const auto compare = [&](LossLimit limit, double figure, const std::optional<double>& most) {
         if (!most) return;
-        const double ratio = figure / *most;
+        const double ratio = *most > 0.0    ? figure / *most
+                             : figure > 0.0 ? std::numeric_limits<double>::infinity()
+                                            : 0.0;
         if (figure > *most && ratio > attempt.ratio) attempt.exceeded = limit;
         attempt.ratio = std::max(attempt.ratio, ratio);
     };
-    compare(LossLimit::degrees, attempt.degrees, limits.degrees);
+    compare(LossLimit::degrees, attempt.degrees, limits.normals.degrees);
     compare(LossLimit::flip, attempt.flip, limits.flip);
     return attempt;
 }
@@ -101,7 +105,7 @@ std::vector<std::string> limit_lines(const LossLimits& limits,
     for (const LimitAttempt& attempt : attempts) {
         const std::string next =
             attempt.next ? fmt::format("; next {}", text_of(*attempt.next)) : std::string();
-        lines.push_back(figures_of(attempt) +
+        lines.push_back(figures_of(limits, attempt) +
                         (attempt.exceeded ? fmt::format("; more than {}{}",
                                                         name_of_limit(*attempt.exceeded), next)
                                           : fmt::format("; {} held", text_of(limits))));
@@ -110,7 +114,8 @@ std::vector<std::string> limit_lines(const LossLimits& limits,
 }
 
 Json limits_json(const LossLimits& limits, const std::vector<LimitAttempt>& attempts) {
-    return {{"max_error", or_null(limits.degrees)},
+    return {{"max_error", or_null(limits.normals.degrees)},
+            {"max_error_kind", enum_name(limits.normals.statistic())},
             {"max_picture_error", or_null(limits.flip)},
             {"attempts", json_list(attempts, [](const LimitAttempt& attempt) -> Json {
                  Json json = {{"triangles", attempt.triangles},
@@ -136,7 +141,7 @@ std::string limits_error(const LossLimits& limits, const std::vector<LimitAttemp
     const bool at_bounds = attempts.size() < max_attempts;
     return fmt::format(
         "{} cannot be held: the best of {} has {}; {}", text_of(limits),
-        counted(attempts.size(), "attempt"), figures_of(*best),
+        counted(attempts.size(), "attempt"), figures_of(limits, *best),
         at_bounds ? fmt::format("it has all triangles and maps of at most {}; allow a larger error",
                                 max_limit_size)
                   : "start with more --triangles and a larger --size, or allow a larger error");

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "common/error_bound.h"
 #include "common/summary.h"
 #include "relief/shade/fidelity.h"
 
@@ -17,10 +18,10 @@ namespace relief::tools {
 
 /// Limits above 0 of the loss as it is printed, with four digits after the point.
 struct LossLimits {
-    std::optional<double> degrees;  ///< Of the mean angle between normals.
-    std::optional<double> flip;     ///< Of the mean FLIP with each light.
+    ErrorBound normals;          ///< Of the angle between normals.
+    std::optional<double> flip;  ///< Of the mean FLIP with each light.
 
-    [[nodiscard]] bool any() const { return degrees || flip; }
+    [[nodiscard]] bool any() const { return normals.degrees || flip; }
 };
 
 enum class LossLimit { degrees, flip };
@@ -37,7 +38,7 @@ inline constexpr std::size_t max_attempts = 6;
 struct LimitAttempt {
     std::size_t triangles = 0;  ///< The target number.
     glm::ivec2 size{0};
-    double degrees = 0.0;
+    double degrees = 0.0;  ///< By the statistic of the limit.
     double flip = 0.0;
     double silhouettes = 0.0;  ///< In pixels.
     /// The limit that is exceeded most, by the ratio; absent: all limits hold.

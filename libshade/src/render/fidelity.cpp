@@ -445,10 +445,10 @@ double mean_of(std::span<const float> values) {
     return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-/// Returns the smallest value that 95 % of all do not exceed; 0 if there is none.
-double percentile_95(std::vector<float> values) {
+/// Returns the smallest value that a percentage of all do not exceed; 0 if there is none.
+double percentile(std::vector<float> values, std::size_t percent) {
     if (values.empty()) return 0.0;
-    const std::size_t rank = (values.size() * 95 + 99) / 100 - 1;
+    const std::size_t rank = (values.size() * percent + 99) / 100 - 1;
     std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank),
                      values.end());
     return static_cast<double>(values[rank]);
@@ -777,16 +777,22 @@ Fidelity FidelityMeter::measure(const Scene& result, Report& report) {
     for (std::size_t i = 0; i < fidelity_light_count; ++i) {
         PictureLoss& loss = fidelity.pictures[i];
         loss.mean = mean_of(flip[i].values);
-        loss.p95 = percentile_95(std::move(flip[i].values));
+        loss.p95 = percentile(std::move(flip[i].values), 95);
         loss.floor = self.floors.flip[i];
     }
     fidelity.studio_mean_on_black = mean_of(on_black.values);
     NormalLoss& normals = fidelity.normals;
     normals.mean = mean_of(degrees.values);
     normals.pixels = degrees.values.size();
-    for (const float value : degrees.values)
-        normals.max = std::max(normals.max, static_cast<double>(value));
-    normals.p95 = percentile_95(std::move(degrees.values));
+    double squares = 0.0;
+    for (const float value : degrees.values) {
+        const auto angle = static_cast<double>(value);
+        normals.max = std::max(normals.max, angle);
+        squares += angle * angle;
+    }
+    if (normals.pixels > 0) normals.rms = std::sqrt(squares / static_cast<double>(normals.pixels));
+    normals.p95 = percentile(degrees.values, 95);
+    normals.p99 = percentile(std::move(degrees.values), 99);
     normals.floor = self.floors.degrees;
     fidelity.silhouettes.width = silhouettes.width();
     fidelity.silhouettes.floor = self.floors.silhouette_pixels;
@@ -795,6 +801,20 @@ Fidelity FidelityMeter::measure(const Scene& result, Report& report) {
     drawn.reset();
     self.cache.drop_unused();
     return fidelity;
+}
+
+double NormalLoss::error(ErrorKind kind) const {
+    switch (kind) {
+        case ErrorKind::mean:
+            return mean;
+        case ErrorKind::rms:
+            return rms;
+        case ErrorKind::p99:
+            return p99;
+        case ErrorKind::max:
+            break;
+    }
+    return max;
 }
 
 Fidelity measure_fidelity(const Scene& source, const Scene& result, const FidelityOptions& options,

@@ -167,7 +167,6 @@ struct Inputs {
         MeshFile file;
         file.mesh = make_torus(0.4F, 300, 300);
         write_mesh(folder / "torus.obj", file);
-        write_mesh(folder / "torus.ply", file);
         GltfDocument::from_mesh(file).write(folder / "torus.glb");
     }
 
@@ -311,7 +310,6 @@ std::vector<Operation> operations() {
              return bytes_of(match.corners);
          }},
         {"ReadObj", [] { return run_read_mesh("torus.obj"); }},
-        {"ReadPly", [] { return run_read_mesh("torus.ply"); }},
         {"ReadGltf", [] { return run_read_gltf(inputs().folder / "torus.glb"); }},
     };
 }

@@ -693,6 +693,7 @@ void unify_corners(PlyData& data, const std::filesystem::path& file) {
 
 /// Reads the beginning of a file, at least up to the end of its header.
 std::string read_head(const RandomAccessFile& file) {
+    const ProgressStage stage("reading");
     std::string head;
     const auto has_end = [&] {
         const std::size_t end = head.find("\nend_header");

@@ -16,6 +16,7 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
+#include "relief/mesh/statistics.h"
 #include "relief/shade/renderer.h"
 #include "relief/shade/scene.h"
 
@@ -84,12 +85,17 @@ struct PictureLoss {
 /// The angles between shading normals in degrees. The normal of a pixel is the mean of its samples.
 struct NormalLoss {
     double mean = 0.0;  ///< Over pixels that both models cover completely.
+    double rms = 0.0;
     double p95 = 0.0;
+    double p99 = 0.0;
     double max = 0.0;
     WorstView worst;
     double floor = 0.0;         ///< As PictureLoss::floor.
     std::size_t pixels = 0;     ///< The compared pixels of all views.
     std::size_t undefined = 0;  ///< Pixels without a normal in one picture; not in the angles.
+
+    /// Returns a figure of all views.
+    [[nodiscard]] double error(ErrorKind kind) const;
 };
 
 /// The area that only one model covers, divided by the length of the source's silhouettes: a mean
