@@ -434,8 +434,7 @@ Command add_convert_command(CLI::App& tool) {
     };
     CLI::App& app = add_subcommand(
         tool, "convert",
-        "Converts normal maps: conventions, size, strength, details, mip levels; and maps of all "
-        "kinds to textures.");
+        "Converts normal maps (conventions, size, details, mip levels), and any map to a texture.");
     const auto options = std::make_shared<Options>();
     ConvertRequest& request = options->request;
     add_map_files(app, options->files, "normal map",
