@@ -125,7 +125,7 @@ TEST(MakeLimits, EndWithWhatWasReached) {
     EXPECT_THAT(result.error,
                 HasSubstr("out/ball.obj: --max-error 30 and --max-picture-error 0.0001 cannot be "
                           "held: the best of 6 attempts has "));
-    EXPECT_THAT(result.error, HasSubstr("degrees, FLIP "));
+    EXPECT_THAT(result.error, HasSubstr("degrees (99 %), FLIP "));
     EXPECT_EQ(workplace.read("out/ball.glb"), "old");
     EXPECT_EQ(workplace.outputs(), "ball.glb ball.obj");
 }

@@ -557,7 +557,9 @@ JoinedSurfaces::JoinedSurfaces(std::span<PreparedMesh> meshes, std::span<const d
         joined_.attributes.resize((first_wedge + input.wedge_count) * attributes, 0.0F);
         for (std::uint32_t w = 0; w < input.wedge_count; ++w) {
             const std::span<const float> values = input.attributes_at(w);
-            float* place = &joined_.attributes[(first_wedge + w) * attributes + first_attribute];
+            // A surface may have no attributes.
+            float* place =
+                joined_.attributes.data() + (first_wedge + w) * attributes + first_attribute;
             for (std::size_t k = 0; k < values.size(); ++k)
                 place[k] =
                     static_cast<float>(values[k] * std::sqrt(input.attribute_weights[k]) * factor);
