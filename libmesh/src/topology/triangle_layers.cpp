@@ -162,7 +162,6 @@ TriangleLayers separate_layers(
         };
         std::stable_sort(stack.begin(), stack.end(),
                          [&](const Member& a, const Member& b) { return key_of(a) < key_of(b); });
-        const std::uint32_t front = triangle_of(order[stack[0].place]);
         const auto wedges_of = [&](const Member& member) {
             const std::uint32_t part = key_of(member).part;
             std::array<std::uint32_t, 3> wedges{};
@@ -172,6 +171,19 @@ TriangleLayers separate_layers(
             std::sort(wedges.begin(), wedges.end());
             return wedges;
         };
+        // Of repeated triangles, the one with the first corner in front stays: the tangents of a
+        // triangle depend on its first corner.
+        for (std::size_t begin = 0, end = 0; begin < stack.size(); begin = end) {
+            while (end < stack.size() && key_of(stack[end]) == key_of(stack[begin]) &&
+                   wedges_of(stack[end]) == wedges_of(stack[begin]))
+                ++end;
+            std::stable_sort(stack.begin() + static_cast<std::ptrdiff_t>(begin),
+                             stack.begin() + static_cast<std::ptrdiff_t>(end),
+                             [&](const Member& a, const Member& b) {
+                                 return order[a.place] % 3 < order[b.place] % 3;
+                             });
+        }
+        const std::uint32_t front = triangle_of(order[stack[0].place]);
         TriangleLayers here;
         for (std::size_t i = 0; i < stack.size(); ++i) {
             const Member& member = stack[i];
