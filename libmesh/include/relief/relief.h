@@ -253,7 +253,7 @@ RELIEF_C_API relief_status relief_split_vertices(const relief_mesh* mesh,
                                                  uint32_t* indices, uint32_t* source_vertices,
                                                  size_t capacity, size_t* vertex_count);
 
-/// What charts keep in the map, as Flattening (relief/mesh/unwrap.h).
+/// The property that charts keep in the map, as Flattening (relief/mesh/unwrap.h).
 enum relief_flattening {
     RELIEF_FLATTENING_ARAP = 0,      ///< Lengths: as rigid as possible.
     RELIEF_FLATTENING_CONFORMAL = 1  ///< Angles.

@@ -15,10 +15,9 @@ struct TiledPacking {
     std::vector<int> tile;  ///< For each chart, 0 to tiles - 1.
 };
 
-/// \param tiles  at least 1. The largest charts come first, each to the tile with the smallest
-/// area.
-///         Of few charts, some change their tile afterwards, so that all tiles are equally full
-/// \throws InvalidInput as packed()
+/// Packs charts into tiles: the largest come first, each to the tile with the smallest area. If
+/// there are few charts, some change their tile afterwards to fill all tiles equally. \param tiles
+/// at least 1 \throws InvalidInput as packed()
 TiledPacking packed_into_tiles(std::span<const FlatChart> charts, const PackingOptions& options,
                                int tiles);
 

@@ -20,7 +20,7 @@
 
 namespace RELIEF_API relief {
 
-/// What charts keep in the map as far as their curvature permits.
+/// The property that charts keep in the map, as far as their curvature permits.
 enum class Flattening {
     arap,       ///< Lengths: as rigid as possible.
     conformal,  ///< Angles. The density of texels varies more.
