@@ -16,8 +16,10 @@ struct TiledPacking {
 };
 
 /// Packs charts into tiles: the largest come first, each to the tile with the smallest area. If
-/// there are few charts, some change their tile afterwards to fill all tiles equally. \param tiles
-/// at least 1 \throws InvalidInput as packed()
+/// there are few charts, some change their tile afterwards to fill all tiles equally.
+///
+/// \param tiles  at least 1
+/// \throws InvalidInput as packed()
 TiledPacking packed_into_tiles(std::span<const FlatChart> charts, const PackingOptions& options,
                                int tiles);
 
