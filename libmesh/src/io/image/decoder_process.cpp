@@ -260,10 +260,6 @@ std::unique_ptr<DecoderProcess> DecoderProcess::start(const std::filesystem::pat
         fail(std::strerror(error));
     }
     std::unique_ptr<DecoderProcess> process(new DecoderProcess(id, ends[0]));
-    for (const auto which : {RLIMIT_CORE, RLIMIT_FSIZE}) {
-        constexpr rlimit nothing{};
-        ::prlimit(id, which, &nothing, nullptr);
-    }
     try {
         constexpr std::chrono::seconds loading_time{120};
         DecoderTime time{loading_time, loading_time};
@@ -277,6 +273,11 @@ std::unique_ptr<DecoderProcess> DecoderProcess::start(const std::filesystem::pat
         }
     } catch (const DecoderLost&) {
         fail("it ended at once");
+    }
+    // Not earlier: AddressSanitizer reads and sets the limit of core files while it starts.
+    for (const auto which : {RLIMIT_CORE, RLIMIT_FSIZE}) {
+        constexpr rlimit nothing{};
+        ::prlimit(id, which, &nothing, nullptr);
     }
     process->idle_addresses_ = address_bytes(id);
     if (process->idle_addresses_ == 0) fail("its use of memory cannot be read in /proc");
