@@ -488,7 +488,7 @@ TEST(PngFilter, EveryFilterIsInvertedForAnyVectorWidth) {
     }
 }
 
-constexpr std::size_t size = 3000;  // 500 texels of three 16-bit samples.
+constexpr std::size_t row_bytes = 3000;  // 500 texels of three 16-bit samples.
 constexpr std::size_t filter_step = 6;
 
 /// 30 rows and the one above, from `value(row, byte)`.
@@ -496,7 +496,7 @@ template <typename Value>
 std::vector<std::uint8_t> rows_of(Value value) {
     std::vector<std::uint8_t> rows;
     for (std::size_t y = 0; y < 31; ++y) {
-        for (std::size_t i = 0; i < size; ++i)
+        for (std::size_t i = 0; i < row_bytes; ++i)
             rows.push_back(static_cast<std::uint8_t>(value(y, i)));
     }
     return rows;
@@ -506,16 +506,17 @@ TEST(FilterChoice, NoiseIsLeftAloneAndNotSearched) {
     std::mt19937 random(1);
     const auto rows = rows_of([&](std::size_t, std::size_t) { return random(); });
     for (const WriteEffort effort : {WriteEffort::fast, WriteEffort::normal, WriteEffort::small})
-        EXPECT_EQ(choose_filter(rows, size, filter_step, effort).repetitions, Repetitions::ignored);
+        EXPECT_EQ(choose_filter(rows, row_bytes, filter_step, effort).repetitions,
+                  Repetitions::ignored);
 }
 
 TEST(FilterChoice, PredictsFromAboveIfRowsAreSimilar) {
     std::mt19937 random(2);
-    std::vector<std::size_t> above(size);
+    std::vector<std::size_t> above(row_bytes);
     for (std::size_t& value : above)
         value = random();
     const auto rows = rows_of([&](std::size_t, std::size_t i) { return above[i] += random() % 8; });
-    const FilterChoice choice = choose_filter(rows, size, filter_step, WriteEffort::normal);
+    const FilterChoice choice = choose_filter(rows, row_bytes, filter_step, WriteEffort::normal);
     EXPECT_EQ(choice.filter, 2);
 }
 
@@ -526,7 +527,7 @@ TEST(FilterChoice, PredictsFromTheLeftIfColumnsAreSimilar) {
         if (i < filter_step) last[i] = random();
         return last[i % filter_step] += random() % 8;
     });
-    const FilterChoice choice = choose_filter(rows, size, filter_step, WriteEffort::normal);
+    const FilterChoice choice = choose_filter(rows, row_bytes, filter_step, WriteEffort::normal);
     EXPECT_EQ(choice.filter, 1);
 }
 
@@ -541,7 +542,7 @@ TEST(FilterChoice, FewTexelsInAnyOrderStayAsTheyAre) {
         if (i % filter_step == 0) texel = random() % 16;
         return texels[texel * filter_step + i % filter_step];
     });
-    const FilterChoice choice = choose_filter(rows, size, filter_step, WriteEffort::normal);
+    const FilterChoice choice = choose_filter(rows, row_bytes, filter_step, WriteEffort::normal);
     EXPECT_EQ(choice.filter, 0);
     EXPECT_EQ(choice.repetitions, Repetitions::sought);
 }
