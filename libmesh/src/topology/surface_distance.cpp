@@ -565,7 +565,7 @@ std::vector<double> area_sums(const Surface& surface) {
     return sums;
 }
 
-/// Computes means over samples, and the maximum over them.
+/// Computes means over samples, the 95 % of them, and the maximum.
 ///
 /// \param areas  area_sums() of `from`
 template <typename Samples>
@@ -576,6 +576,7 @@ void measure_samples(const Surface& from, const Surface& to, std::span<const dou
     if (!(stats.area > 0.0) || count == 0) return;
     stats.samples = count;
     using Sums = DistanceStats;
+    std::vector<double> squared(count);
     const std::vector<Sums> pieces = measured_in_pieces<Sums>(
         count,
         [&](std::size_t begin, std::size_t end) {
@@ -599,6 +600,7 @@ void measure_samples(const Surface& from, const Surface& to, std::span<const dou
                 const Nearest nearest =
                     to.nearest(c[0] + u * (c[1] - c[0]) + v * (c[2] - c[0]), guess, work);
                 guess = nearest.triangle;
+                squared[i] = nearest.squared;
                 sums.mean += std::sqrt(nearest.squared);
                 sums.rms += nearest.squared;
                 sums.max = std::max(sums.max, nearest.squared);
@@ -620,6 +622,9 @@ void measure_samples(const Surface& from, const Surface& to, std::span<const dou
     }
     stats.mean /= static_cast<double>(count);
     stats.rms = std::sqrt(stats.rms / static_cast<double>(count));
+    const auto rank = squared.begin() + static_cast<std::ptrdiff_t>((95 * count + 99) / 100 - 1);
+    std::nth_element(squared.begin(), rank, squared.end());
+    stats.p95 = std::sqrt(*rank);
     stats.max = std::sqrt(stats.max);
     stats.mean_degrees /= static_cast<double>(count);
 }

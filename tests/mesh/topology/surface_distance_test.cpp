@@ -55,6 +55,11 @@ TEST(SurfaceDistance, TheTwoDirectionsDiffer) {
     EXPECT_NEAR(distance.from_a.max, std::sqrt(0.5), 1e-6);
     EXPECT_NEAR(distance.from_a.mean, std::sqrt(0.5) / 6.0, sampling * std::sqrt(0.5) / 6.0);
     EXPECT_NEAR(distance.from_b.max, 0.0, 1e-6);
+    // The part of a that is farther than d is (1 - d / sqrt(1 / 2))^2 / 2.
+    const double p95 = std::sqrt(0.5) * (1.0 - std::sqrt(0.1));
+    EXPECT_NEAR(distance.from_a.p95, p95, sampling * p95);
+    EXPECT_NEAR(sampled_distance(a, b, 4000, 10).from_a.p95, p95, 0.02);
+    EXPECT_NEAR(distance.from_b.p95, 0.0, 1e-6);
 }
 
 TEST(SurfaceDistance, FindsTheMaximumBetweenVertices) {

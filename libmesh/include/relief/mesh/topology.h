@@ -136,6 +136,7 @@ double max_corner_angle(const Mesh& original, const FramedMesh& result);
 struct DistanceStats {
     double mean = 0.0;          ///< Over area, of samples; in the unit of the meshes.
     double rms = 0.0;           ///< Over area, of samples.
+    double p95 = 0.0;           ///< 95 % of the samples do not exceed it.
     double max = 0.0;           ///< At the examined points.
     double mean_degrees = 0.0;  ///< Over area, of samples.
     double max_degrees = 0.0;   ///< Of samples.
