@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -355,6 +356,26 @@ TEST(MeshBakeTextures, ColorsAreThoseOfMaterialsOrOfAFileOrNone) {
     EXPECT_EQ(color("--high-color none"), (std::vector<int>{255, 255, 255}));
     EXPECT_EQ(color("--high-color color.png"), (std::vector<int>{188, 188, 255}));
     EXPECT_EQ(workplace.run(strict_line + "--high-color none").exit_code, 2);
+}
+
+TEST(LayerCoding, ColorsOf8BitsAreRoundedAlongTheCurve) {
+    std::vector<float> values = {0.0F, 1.0F, 0.5F};
+    for (int code = 1; code < 256; ++code) {
+        const float limit = linear_from_srgb((static_cast<float>(code) - 0.5F) / 255.0F);
+        for (int step = -150; step < 150; ++step)
+            values.push_back(std::bit_cast<float>(std::bit_cast<int>(limit) + step));
+    }
+    Report report;
+    const std::vector<std::uint8_t> stored =
+        codes<std::uint8_t>({LayerKind::color, 8, 1.0}, values, report);
+    ASSERT_EQ(stored.size(), values.size());
+    std::size_t differing = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const double coded = static_cast<double>(srgb_from_linear(values[i]));
+        if (stored[i] != static_cast<std::uint8_t>(std::round(255.0 * coded))) ++differing;
+    }
+    EXPECT_EQ(differing, 0U);
+    EXPECT_TRUE(report.empty());
 }
 
 TEST(LayerCoding, AlphaIsTheOpacityOfTexelsThatAreFilled) {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Encodes the layers of a bake for image files. Tests: tests/tools/relief_bake_layers_test.cpp.
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <type_traits>
@@ -22,6 +25,49 @@ Sample alpha_code(float alpha) {
     return static_cast<Sample>(std::floor(std::clamp(alpha, 0.0F, 1.0F) * largest + 0.5F));
 }
 
+/// Codes of 8 bits for linear colors. srgb_from_linear() costs a power for each value, so only the
+/// limits between codes come from it.
+class SrgbCodes {
+  public:
+    SrgbCodes() {
+        limits_.back() = std::numeric_limits<float>::infinity();
+        for (std::size_t code = 1; code < code_count; ++code)
+            limits_[code] = first_value_of(code);
+        for (std::size_t cell = 0; cell < cells_.size(); ++cell)
+            cells_[cell] = computed(static_cast<float>(cell) / cell_count);
+    }
+
+    /// \param linear  within [0, 1]
+    [[nodiscard]] std::uint8_t code(float linear) const {
+        const std::uint8_t code = cells_[static_cast<std::size_t>(linear * cell_count)];
+        return linear >= limits_[code + 1U] ? static_cast<std::uint8_t>(code + 1) : code;
+    }
+
+  private:
+    static constexpr std::size_t code_count = 256;
+    /// The curve rises by at most 12.92 * 255 codes, so that a cell has at most one limit.
+    static constexpr float cell_count = 4096.0F;
+
+    static std::uint8_t computed(float linear) {
+        constexpr double largest = code_count - 1;
+        return static_cast<std::uint8_t>(
+            std::round(largest * static_cast<double>(srgb_from_linear(linear))));
+    }
+    /// Positive floats have the order of their bits.
+    static float first_value_of(std::size_t code) {
+        std::uint32_t below = 0;
+        auto end = std::bit_cast<std::uint32_t>(1.0F);
+        while (end - below > 1) {
+            const std::uint32_t middle = below + (end - below) / 2;
+            (computed(std::bit_cast<float>(middle)) >= code ? end : below) = middle;
+        }
+        return std::bit_cast<float>(end);
+    }
+
+    std::array<float, code_count + 1> limits_{};  ///< By code: the first value that has it.
+    std::array<std::uint8_t, static_cast<std::size_t>(cell_count) + 1> cells_{};
+};
+
 /// Encodes a value. \param is_outside  becomes true if the value is outside the range of the codes
 template <typename Sample>
 Sample encode_value(const LayerCoding& coding, float value, bool& is_outside) {
@@ -41,6 +87,10 @@ Sample encode_value(const LayerCoding& coding, float value, bool& is_outside) {
         if (coding.is_signed()) {
             constexpr double middle = (largest + 1.0) / 2.0;
             return static_cast<Sample>(middle + std::round((middle - 1.0) * place));
+        }
+        if constexpr (std::is_same_v<Sample, std::uint8_t>) {
+            static const SrgbCodes codes;
+            if (coding.kind == LayerKind::color) return codes.code(static_cast<float>(place));
         }
         if (coding.kind == LayerKind::color)
             place = static_cast<double>(srgb_from_linear(static_cast<float>(place)));
