@@ -544,35 +544,46 @@ struct FanMesh {
 
 FanMesh mesh_of(const SmoothFans& fans, StridedSpan<const glm::vec3> positions,
                 TriangleSpan triangles) {
-    // Vertices of a fan can have different positions, because welding has a tolerance.
-    using FanVertex = std::pair<std::uint32_t, std::uint32_t>;
-    std::vector<FanVertex> vertices;
-    vertices.reserve(fans.fan_of_corner.size());
+    const auto vertex_at = [&](std::size_t corner) {
+        return vertex_of(static_cast<Corner>(corner), triangles);
+    };
+    // The corners by fan.
+    std::vector<std::uint32_t> begin(fans.count + 1, 0);
+    for (const std::uint32_t fan : fans.fan_of_corner)
+        ++begin[fan + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+    std::vector<std::uint32_t> vertices(fans.fan_of_corner.size());
     for (std::size_t c = 0; c < fans.fan_of_corner.size(); ++c) {
         check_cancelled(c);
-        vertices.emplace_back(fans.fan_of_corner[c], vertex_of(static_cast<Corner>(c), triangles));
+        vertices[next[fans.fan_of_corner[c]]++] = vertex_at(c);
     }
-    check_cancelled();
-    std::sort(vertices.begin(), vertices.end());
-    check_cancelled();
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-
+    // Vertices of a fan can have different positions, because welding has a tolerance.
     FanMesh mesh;
-    std::vector<std::uint32_t> first_of_fan(vertices.size());
-    for (std::uint32_t i = 0; i < vertices.size(); ++i) {
-        mesh.positions.push_back(positions[vertices[i].second]);
-        mesh.vertex.push_back(vertices[i].second);
-        const bool goes_on = i > 0 && vertices[i].first == vertices[i - 1].first;
-        first_of_fan[i] = goes_on ? first_of_fan[i - 1] : i;
+    std::vector<std::uint32_t> first_of_fan;
+    for (std::size_t fan = 0; fan < fans.count; ++fan) {
+        check_cancelled(fan);
+        const auto from = vertices.begin() + begin[fan];
+        const auto to = vertices.begin() + begin[fan + 1];
+        std::sort(from, to);
+        const auto first = static_cast<std::uint32_t>(mesh.vertex.size());
+        begin[fan] = first;
+        mesh.vertex.insert(mesh.vertex.end(), from, std::unique(from, to));
+        first_of_fan.resize(mesh.vertex.size(), first);
     }
+    begin[fans.count] = static_cast<std::uint32_t>(mesh.vertex.size());
+    mesh.positions.reserve(mesh.vertex.size());
+    for (const std::uint32_t vertex : mesh.vertex)
+        mesh.positions.push_back(positions[vertex]);
     mesh.fans = groups_of(first_of_fan);
     mesh.triangles.resize(triangles.size());
     for (std::size_t c = 0; c < fans.fan_of_corner.size(); ++c) {
         check_cancelled(c);
-        const FanVertex wanted(fans.fan_of_corner[c], vertex_of(static_cast<Corner>(c), triangles));
-        const auto found = std::lower_bound(vertices.begin(), vertices.end(), wanted);
+        const std::uint32_t fan = fans.fan_of_corner[c];
+        const auto found = std::lower_bound(mesh.vertex.begin() + begin[fan],
+                                            mesh.vertex.begin() + begin[fan + 1], vertex_at(c));
         mesh.triangles[c / 3][static_cast<int>(c % 3)] =
-            static_cast<std::uint32_t>(found - vertices.begin());
+            static_cast<std::uint32_t>(found - mesh.vertex.begin());
     }
     return mesh;
 }

@@ -109,7 +109,8 @@ glm::dvec3 direction_of(const RepairSurface& surface, std::span<const Corner> co
 
 }  // namespace
 
-void cut_pinched_edges(RepairSurface& surface) {
+bool cut_pinched_edges(RepairSurface& surface) {
+    if (surface.crowded.empty()) return false;
     const std::vector<std::uint32_t> before = fans_of(surface);
     std::vector<CrowdedEdge> cut;
     for (const CrowdedEdge& edge : surface.crowded) {
@@ -123,7 +124,7 @@ void cut_pinched_edges(RepairSurface& surface) {
             surface.cut(surface.crowd[i]);
         cut.push_back(edge);
     }
-    if (cut.empty()) return;
+    if (cut.empty()) return false;
     // Each piece of a fan has now at most two triangles at the edge, in opposite directions.
     const std::vector<std::uint32_t> after = fans_of(surface);
     for (const CrowdedEdge& edge : cut) {
@@ -134,6 +135,7 @@ void cut_pinched_edges(RepairSurface& surface) {
             surface.opposite[ends[i].corner] = ends[i - 1].corner;
         }
     }
+    return true;
 }
 
 std::vector<std::uint32_t> separate_fans(RepairSurface& surface,

@@ -68,8 +68,9 @@ PartOrder find_parts(RepairSurface& surface) {
     return order;
 }
 
-/// Cuts the edges at which a part has two windings.
-void cut_twisted_edges(RepairSurface& surface, Report& report) {
+/// Cuts the edges at which a part has two windings. Returns whether there are any.
+bool cut_twisted_edges(RepairSurface& surface, Report& report) {
+    bool is_cut = false;
     for (Corner corner = 0; corner < surface.opposite.size(); ++corner) {
         const Corner other = surface.opposite[corner];
         if (other == no_corner || !surface.is_twisted(corner, other)) continue;
@@ -77,7 +78,9 @@ void cut_twisted_edges(RepairSurface& surface, Report& report) {
                    std::min(surface.faces[corner / 3].triangle, surface.faces[other / 3].triangle),
                    "is cut");
         surface.cut(corner);
+        is_cut = true;
     }
+    return is_cut;
 }
 
 void measure(const RepairSurface& surface, const PartOrder& order, RepairPart& part) {
@@ -232,11 +235,11 @@ void drop_small_parts(RepairSurface& surface, const PartOrder& order, double len
 }  // namespace
 
 void orient_parts(RepairSurface& surface, const RepairOptions& options, Report& report) {
-    find_parts(surface);
-    cut_twisted_edges(surface, report);
-    if (options.separate) cut_pinched_edges(surface);
-    // Cuts may have divided parts.
     PartOrder order = find_parts(surface);
+    const bool has_cut_twisted = cut_twisted_edges(surface, report);
+    const bool has_cut_pinched = options.separate && cut_pinched_edges(surface);
+    // Cuts may have divided parts.
+    if (has_cut_twisted || has_cut_pinched) order = find_parts(surface);
     for (RepairPart& part : order.parts)
         measure(surface, order, part);
     if (options.orient) orient_outwards(surface, order, report);

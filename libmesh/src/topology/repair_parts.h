@@ -73,8 +73,9 @@ void join_faces(RepairSurface& surface, const RepairOptions& options, Report& re
 void orient_parts(RepairSurface& surface, const RepairOptions& options, Report& report);
 
 /// Cuts crowded edges whose triangles are in the same fans at both ends, although they are not
-/// joined, and joins those that are at one edge of the separated fans.
-void cut_pinched_edges(RepairSurface& surface);
+/// joined, and joins those that are at one edge of the separated fans. Returns whether edges
+/// were cut.
+bool cut_pinched_edges(RepairSurface& surface);
 
 /// Moves fans at one position apart.
 /// \return by corner of a face, the number of its fan: equal for all corners that stay together
