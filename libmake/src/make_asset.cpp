@@ -5,21 +5,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <numeric>
 #include <utility>
 
+#include "bake_stage.h"
 #include "relief/make/asset.h"
 #include "relief/mesh/frames.h"
-#include "relief/mesh/normal_map.h"
 
 namespace relief::make {
 namespace {
 
 constexpr int min_size = 16;
 constexpr int max_size = 16384;
-/// Smaller ones have the highlights of a mirror, which a light does not hit.
-constexpr float min_roughness = 0.03F;
 
 void check(const AssetOptions& options) {
     if (options.triangles < 1)
@@ -28,6 +25,15 @@ void check(const AssetOptions& options) {
     if (std::min(size.x, size.y) < min_size || std::max(size.x, size.y) > max_size) {
         throw InvalidInput(fmt::format("the size of maps is {} x {}, but must be {} to {}", size.x,
                                        size.y, min_size, max_size));
+    }
+    for (const LayerKind kind : options.layers) {
+        if (kind != LayerKind::height && kind != LayerKind::curvature &&
+            kind != LayerKind::position) {
+            throw InvalidInput(fmt::format(
+                "further layers are height, curvature and position, not {}", enum_name(kind)));
+        }
+        if (std::ranges::count(options.layers, kind) > 1)
+            throw InvalidInput(fmt::format("the layer {} is requested twice", enum_name(kind)));
     }
 }
 
@@ -46,11 +52,6 @@ class Maker {
     void unwrap_mesh(Report& report);
     void compute_frames(Report& report);
     void bake(Report& report);
-    [[nodiscard]] bool has_many_colors() const;
-    [[nodiscard]] const HighMaterial* only_material() const;
-    [[nodiscard]] BakeOptions bake_options() const;
-    void bake_maps(const Baker& baker, Report& report);
-    void bake_occlusion(const Baker& baker, Report& report);
 
     const AssetSource& source_;
     const AssetOptions& options_;
@@ -136,124 +137,8 @@ void Maker::compute_frames(Report& report) {
     asset_.mesh.name = source_.name;
 }
 
-/// Returns the material of all triangles; null if there are several.
-const HighMaterial* Maker::only_material() const {
-    static const HighMaterial white;
-    const HighMaterial* other = source_.otherwise ? &*source_.otherwise : &white;
-    if (high_.material_ranges.empty()) return other;
-    const auto material_of = [&](const MaterialRange& range) {
-        const bool is_known = range.material && *range.material < source_.materials.size();
-        return is_known ? &source_.materials[*range.material] : other;
-    };
-    const HighMaterial* first = material_of(high_.material_ranges.front());
-    const bool is_same = std::ranges::all_of(
-        high_.material_ranges, [&](const auto& range) { return material_of(range) == first; });
-    return is_same ? first : nullptr;
-}
-
-bool Maker::has_many_colors() const {
-    if (!high_.colors.empty()) return true;
-    const HighMaterial* material = only_material();
-    return material == nullptr || material->color_texture ||
-           material->opacity.value_or(1.0F) < 1.0F;
-}
-
-BakeOptions Maker::bake_options() const {
-    BakeOptions baking;
-    baking.map.width = options_.size.x;
-    baking.map.height = options_.size.y;
-    baking.map.samples = options_.samples;
-    baking.map.padding = options_.padding;
-    baking.map.layers.colors = has_many_colors();
-    baking.map.layers.opacity = baking.map.layers.colors && source_.alpha_mode != AlphaMode::opaque;
-    if (options_.occlusion) baking.map.layers.occlusion = {.rays = options_.occlusion_rays};
-    baking.map_count = options_.occlusion ? 2 : 1;
-    baking.materials.push_back({&high_, source_.materials, {}, source_.otherwise});
-    return baking;
-}
-
-/// An image of 8 bits to which rows are appended.
-Image empty_map(const glm::ivec2& size, int channels, ColorSpace color_space) {
-    Image image;
-    image.width = size.x;
-    image.height = size.y;
-    image.channels = channels;
-    image.color_space = color_space;
-    std::vector<std::uint8_t> samples;
-    samples.reserve(image.sample_count());
-    image.samples = std::move(samples);
-    return image;
-}
-
-void append(Image& image, std::span<const std::byte> codes) {
-    auto& samples = std::get<std::vector<std::uint8_t>>(image.samples);
-    const std::size_t before = samples.size();
-    samples.resize(before + codes.size());
-    std::memcpy(&samples[before], codes.data(), codes.size());
-}
-
-void append_layer(Image& image, LayerKind kind, const BakedRows& rows, bool has_alpha,
-                  Report& report) {
-    const std::size_t first =
-        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(rows.first_row);
-    const LayerCoding coding{kind, 8, 1.0};
-    append(image, encode_layer(layer_values(kind, rows), rows.states, coding, has_alpha, first,
-                               report, has_alpha ? rows.opacity : std::span<float>()));
-}
-
-void Maker::bake_maps(const Baker& baker, Report& report) {
-    BakeMapOptions map = baker.options().map;
-    map.layers.occlusion.reset();
-    map.measures_missed = true;
-    asset_.normal_map = empty_map(options_.size, 3, ColorSpace::data);
-    if (map.layers.colors)
-        asset_.color_map = empty_map(options_.size, map.layers.opacity ? 4 : 3, ColorSpace::srgb);
-    NormalMapFormat format;
-    format.bits = 8;
-    const auto take = [&](const BakedRows& rows) {
-        const ImageView normals(rows.normals.data(), options_.size.x, rows.row_count, 3);
-        const Image codes = encode_normal_map(normals, format, report);
-        append(asset_.normal_map, std::as_bytes(codes.as<std::uint8_t>()));
-        if (asset_.color_map)
-            append_layer(*asset_.color_map, LayerKind::color, rows, map.layers.opacity, report);
-    };
-    asset_.bake = baker.bake(map, take, report, options_.execution);
-}
-
-void Maker::bake_occlusion(const Baker& baker, Report& report) {
-    BakeMapOptions map = baker.options().map;
-    const OcclusionOptions rays = *map.layers.occlusion;
-    // Occlusion varies slowly, and its rays cost most.
-    constexpr int reduction = 4;
-    const glm::ivec2 size = glm::max(options_.size / reduction, glm::ivec2(1));
-    map.width = size.x;
-    map.height = size.y;
-    map.samples = 1;
-    map.padding = (options_.padding + reduction - 1) / reduction;
-    map.layers = {};
-    map.layers.normals = false;
-    map.layers.occlusion = rays;
-    asset_.occlusion_map = empty_map(size, 1, ColorSpace::data);
-    Report same;  // Its findings are those of the other maps, at another size.
-    const auto take = [&](const BakedRows& rows) {
-        append_layer(*asset_.occlusion_map, LayerKind::occlusion, rows, false, report);
-    };
-    asset_.bake.occlusion_rays = baker.bake(map, take, same, options_.execution).occlusion_rays;
-}
-
 void Maker::bake(Report& report) {
-    const Baker baker(std::span(&high_, 1), asset_.mesh, bake_options(), report);
-    asset_.agreement = baker.agreement();
-    bake_maps(baker, report);
-    if (asset_.bake.texels_baked == 0)
-        throw InvalidInput("no texel of the maps was baked: no ray hits the source");
-    if (options_.occlusion) bake_occlusion(baker, report);
-    if (const HighMaterial* material = only_material(); material && !asset_.color_map)
-        asset_.color = material->color;
-    if (asset_.color_map && asset_.color_map->channels == 4) {
-        asset_.alpha_mode = source_.alpha_mode;
-        asset_.alpha_cutoff = source_.alpha_cutoff;
-    }
+    detail::bake_maps(source_, high_, options_, asset_, report);
 }
 
 void Maker::run_stage(const std::string& name, void (Maker::*work)(Report&)) {
@@ -272,7 +157,6 @@ Asset Maker::run() {
     const ExecutionScope scope(options_.execution);
     asset_.name = source_.name;
     asset_.origin = source_.origin;
-    asset_.roughness = std::clamp(source_.roughness, min_roughness, 1.0F);
     run_stage("repair", &Maker::repair);
     run_stage("decimate", &Maker::decimate);
     if (!options_.keep_texcoords) run_stage("unwrap", &Maker::unwrap_mesh);

@@ -2,8 +2,11 @@
 // Reads a written asset back and checks it. Tests: tests/make/asset_test.cpp.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
+#include <type_traits>
 
 #include "relief/make/asset.h"
 #include "relief/mesh/gltf_document.h"
@@ -47,6 +50,26 @@ void check_map(const GltfView& view, TextureSlot slot, const Image& expected, Re
         problems.add("map with other texels", "texture", index, outcome);
 }
 
+/// The factors are written as decimal numbers that are read back exactly.
+void check_factors(const GltfMaterial& material, const GltfMaterial& expected, Report& problems) {
+    const auto check = [&](const char* name, bool is_same) {
+        if (!is_same) problems.add(fmt::format("another {}", name), "material", 0, outcome);
+    };
+    for_each_field<MetallicRoughness>([&](const auto& field) {
+        using Value = std::decay_t<decltype(field.default_value())>;
+        if constexpr (std::is_same_v<Value, float> || std::is_same_v<Value, glm::vec3> ||
+                      std::is_same_v<Value, std::optional<float>>) {
+            check(field.name, (*material.metallic_roughness).*field.member ==
+                                  (*expected.metallic_roughness).*field.member);
+        }
+    });
+    check("opacity", material.opacity == expected.opacity);
+    check("alpha mode", material.alpha_mode == expected.alpha_mode);
+    check("emission", material.emission_factor == expected.emission_factor &&
+                          material.emission_strength == expected.emission_strength);
+    check("number of sides", material.double_sided == expected.double_sided);
+}
+
 }  // namespace
 
 Report verify_asset(const std::filesystem::path& file, const Asset& asset) {
@@ -65,10 +88,11 @@ Report verify_asset(const std::filesystem::path& file, const Asset& asset) {
     if (document.mesh(document.triangle_primitives().front()).triangles.size() !=
         asset.mesh.triangles.size())
         problems.add("another number of triangles", "mesh", 0, outcome);
-    check_map(view, TextureSlot::normal, asset.normal_map, problems);
-    if (asset.occlusion_map)
-        check_map(view, TextureSlot::occlusion, *asset.occlusion_map, problems);
-    if (asset.color_map) check_map(view, TextureSlot::base_color, *asset.color_map, problems);
+    for (const AssetMap& map : maps_of(asset)) {
+        for (const TextureSlot slot : map.slots)
+            check_map(view, slot, *map.image, problems);
+    }
+    check_factors(view.materials.front(), asset.material, problems);
     return problems;
 }
 

@@ -11,9 +11,7 @@
 #include "relief/make/asset.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/map_description.h"
 #include "relief/mesh/model.h"
-#include "relief/mesh/normal_map.h"
 #include "relief/mesh/topology.h"
 
 namespace relief::make {
@@ -24,43 +22,30 @@ GltfDocument document_of(const Asset& asset, Report& report) {
     contents.mesh = asset.mesh;
     contents.mesh.name = asset.name;
     contents.origin = asset.origin;
-    MtlMaterial material;
+    MtlMaterial material;  // Its factors are set later.
     material.name = asset.name;
-    material.diffuse = asset.color_map ? glm::vec3(1.0F) : asset.color;
-    // The inverse of from_mesh(), whose roughness is (2 / (Ns + 2))^(1/4).
-    const float square = asset.roughness * asset.roughness;
-    material.shininess = 2.0F / (square * square) - 2.0F;
     contents.materials.push_back(material);
     const auto count = static_cast<std::uint32_t>(asset.mesh.triangles.size());
     contents.mesh.material_ranges = {{0, count, 0U}};
     return GltfDocument::from_mesh(contents, report);
 }
 
-/// Stores the maps in the material. Their files, which have the names of the maps, exist only until
-/// the document has read them.
-void store_maps(GltfDocument& document, const std::filesystem::path& file, const Asset& asset,
-                Report& report) {
+/// Stores the factors and the maps in the material. The files of the maps, which have their names,
+/// exist only until the document has read them.
+void store_material(GltfDocument& document, const std::filesystem::path& file, const Asset& asset,
+                    Report& report) {
+    const GltfMaterial& material = asset.material;
+    document.set_factors(0, material);
+    document.set_alpha_mode(0, material.alpha_mode, material.alpha_cutoff);
     const relief::detail::FileSet temporary;  // It is never committed.
-    const auto store = [&](TextureSlot slot, const char* suffix, const Image& image,
-                           const std::map<std::string, std::string>& metadata) {
-        const std::filesystem::path map =
-            file.parent_path() / (file.stem().string() + suffix + ".png");
-        write_image(map, image, metadata);
-        document.set_texture(0, slot, map, GltfImageStorage::embedded, report);
-    };
-    NormalMapFormat format;
-    format.bits = 8;
-    store(TextureSlot::normal, "_normal", asset.normal_map, normal_map_metadata(format));
-    if (asset.occlusion_map) {
-        store(TextureSlot::occlusion, "_occlusion", *asset.occlusion_map,
-              write_description({.kind = MapKind::occlusion, .color_space = ColorSpace::data}, 8));
+    for (const AssetMap& map : maps_of(asset)) {
+        if (map.slots.empty()) continue;
+        const std::filesystem::path image =
+            file.parent_path() / fmt::format("{}_{}.png", file.stem().string(), map.name);
+        write_image(image, *map.image, map.metadata);
+        for (const TextureSlot slot : map.slots)
+            document.set_texture(0, slot, image, GltfImageStorage::embedded, report);
     }
-    if (!asset.color_map) return;
-    MapDescription colors{.kind = MapKind::color, .color_space = ColorSpace::srgb};
-    if (asset.color_map->channels == 4) colors.alpha = AlphaContent::opacity;
-    store(TextureSlot::base_color, "_color", *asset.color_map, write_description(colors, 8));
-    if (asset.alpha_mode != AlphaMode::opaque)
-        document.set_alpha_mode(0, asset.alpha_mode, asset.alpha_cutoff);
 }
 
 /// The screen on which the pixels of levels are counted, and the error of a level at its switch.
@@ -136,7 +121,7 @@ std::vector<AssetLevel> add_levels(GltfDocument& document, const Asset& asset, s
 std::vector<AssetLevel> write_asset(const std::filesystem::path& file, const Asset& asset,
                                     std::size_t levels, Report& report) {
     GltfDocument document = document_of(asset, report);
-    store_maps(document, file, asset, report);
+    store_material(document, file, asset, report);
     std::vector<AssetLevel> added = add_levels(document, asset, levels, report);
     document.write(file, report);
     return added;

@@ -143,7 +143,7 @@ TEST(MakeAsset, HasTheOnlyColorOfTheSource) {
     source.otherwise.emplace().color = {0.2F, 0.4F, 0.6F};
     const Asset asset = make_asset(source, quick_options(100));
     EXPECT_FALSE(asset.color_map);
-    EXPECT_EQ(asset.color, glm::vec3(0.2F, 0.4F, 0.6F));
+    EXPECT_EQ(asset.material.metallic_roughness->base_color, glm::vec3(0.2F, 0.4F, 0.6F));
 }
 
 // Inputs that must end well. Each has a stated outcome.
@@ -313,11 +313,11 @@ TEST_F(WrittenAsset, IsReadBackAsItWasMade) {
 TEST_F(WrittenAsset, HasTheRoughnessOfTheSource) {
     for (const float roughness : {1.0F, 0.5F, 0.0F}) {
         AssetSource source = source_of(test::cube());
-        source.roughness = roughness;
+        source.otherwise.emplace().roughness = roughness;
         write_asset(folder / "a.glb", make_asset(source, quick_options(12)), 0);
         const GltfView view = test::read_document(folder / "a.glb").view();
         const MetallicRoughness& surface = *view.materials.front().metallic_roughness;
-        EXPECT_NEAR(surface.roughness, std::max(roughness, 0.03F), 1e-4F);
+        EXPECT_EQ(surface.roughness, roughness);
         EXPECT_EQ(surface.metallic, 0.0F);
     }
 }

@@ -388,34 +388,6 @@ double layer_range(LayerKind kind, const LayerOptions& options, const LayerBound
     }
 }
 
-MapKind kind_of(LayerKind kind) {
-    switch (kind) {
-        case LayerKind::height:
-            return MapKind::height;
-        case LayerKind::occlusion:
-            return MapKind::occlusion;
-        case LayerKind::curvature:
-            return MapKind::curvature;
-        case LayerKind::position:
-            return MapKind::position;
-        case LayerKind::color:
-            break;
-    }
-    return MapKind::color;
-}
-
-/// \param alpha  the content of the alpha channel; absent: there is none
-std::map<std::string, std::string> layer_metadata(const LayerCoding& coding,
-                                                  std::optional<AlphaContent> alpha) {
-    std::map<std::string, std::string> metadata = write_description(
-        {.kind = kind_of(coding.kind), .color_space = coding.color_space(), .alpha = alpha},
-        coding.bits);
-    if (coding.bits == 32 || !coding.is_signed()) return metadata;
-    metadata["relief:range"] = fmt::format("{}", coding.range);
-    metadata["relief:zero"] = fmt::format("{}", coding.zero_code());
-    return metadata;
-}
-
 std::map<std::string, std::string> map_metadata(const MeshBakeRequest& request, const MapPlan& plan,
                                                 const NormalMapFormat& format) {
     MapDescription description = read_description(normal_map_metadata(format));

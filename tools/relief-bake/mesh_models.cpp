@@ -97,12 +97,12 @@ std::vector<std::size_t> add_high(const MeshBakeRequest& request, const MapModel
 /// Adds the textures of the high meshes, which must be in their final places.
 void add_textures(const MeshBakeRequest& request, const std::vector<MapAppearance>& appearances,
                   std::span<const std::size_t> file_of, BakeModels& models, Findings& findings) {
-    const bool with_colors = request.layers.has(LayerKind::color);
+    const HighProperties properties{.colors = request.layers.has(LayerKind::color)};
     std::vector<Report> reports(appearances.size());
     for (std::size_t i = 0; i < models.high.size(); ++i) {
         const std::size_t file = file_of[i];
         models.textures.add(request.high[file], models.high[i], appearances[file], request.textures,
-                            with_colors, reports[file]);
+                            properties, reports[file]);
     }
     for (std::size_t file = 0; file < appearances.size(); ++file)
         findings.add(request.high[file].string(), reports[file]);
@@ -117,12 +117,24 @@ ModelPairs pair_models(std::span<const NamedModel> high, const NamedModel& low,
     return pairs;
 }
 
-std::shared_ptr<const Image> HighTextures::image(const std::filesystem::path& file, ImageUse use) {
-    const std::string key = fmt::format("{} {}", file.string(), static_cast<int>(use));
+namespace {
+
+/// The same file may be read as a normal map, a color and data.
+std::string image_key(const std::string& name, TextureSlot slot) {
+    return fmt::format("{} {} {}", name, static_cast<int>(slot_info(slot).use),
+                       slot == TextureSlot::normal);
+}
+
+}  // namespace
+
+std::shared_ptr<const Image> HighTextures::image(const std::filesystem::path& file,
+                                                 TextureSlot slot) {
+    const std::string key = image_key(file.string(), slot);
     const auto known = images_.find(key);
     if (known != images_.end()) return known->second;
-    const auto added = std::make_shared<const Image>(
-        use == ImageUse::data ? read_normal_map_image(file) : read_image(file, use));
+    const auto added = std::make_shared<const Image>(slot == TextureSlot::normal
+                                                         ? read_normal_map_image(file)
+                                                         : read_image(file, slot_info(slot).use));
     images_[key] = added;
     metadata_[added.get()] = read_image_info(file).metadata;
     names_[added.get()] = file;
@@ -131,23 +143,23 @@ std::shared_ptr<const Image> HighTextures::image(const std::filesystem::path& fi
 
 std::shared_ptr<const Image> HighTextures::image(const std::filesystem::path& model,
                                                  const MapAppearance& appearance, std::size_t index,
-                                                 ImageUse use) {
+                                                 TextureSlot slot) {
     const GltfImage& source = appearance.images[index];
     const char* remedy = "put it there, or use --high-normal-map none, --high-color none";
     if (const auto* file = std::get_if<std::filesystem::path>(&source.source)) {
         if (!std::filesystem::exists(*file))
             throw failure(model, fmt::format("image {} is missing", file->string()), remedy);
-        return image(*file, use);
+        return image(*file, slot);
     }
     const std::string name = fmt::format("{}, image {}", model.string(), index);
-    const std::string key = fmt::format("{} {}", name, static_cast<int>(use));
+    const std::string key = image_key(name, slot);
     const auto known = images_.find(key);
     if (known != images_.end()) return known->second;
     const auto& bytes = std::get<std::vector<std::byte>>(source.source);
     if (bytes.empty()) {
         throw failure(model, fmt::format("image {} is outside of its folder", index), remedy);
     }
-    const auto added = std::make_shared<const Image>(read_image(bytes, name, use));
+    const auto added = std::make_shared<const Image>(read_image(bytes, name, slot_info(slot).use));
     images_[key] = added;
     metadata_[added.get()] = read_image_info(bytes, name).metadata;
     names_[added.get()] = name;
@@ -158,8 +170,8 @@ SurfaceTexture HighTextures::texture(const std::filesystem::path& model,
                                      const MapAppearance& appearance, const GltfMaterial& material,
                                      TextureSlot slot) {
     const Texture& texture = *find_texture(material, slot);
-    return {image(model, appearance, texture.image, slot_info(slot).use), texture.wrap_u,
-            texture.wrap_v, texture.filter, material.texcoords_of(slot).transform};
+    return {image(model, appearance, texture.image, slot), texture.wrap_u, texture.wrap_v,
+            texture.filter, material.texcoords_of(slot).transform};
 }
 
 SurfaceNormalMap HighTextures::normal_map(const SurfaceTexture& texture, float scale,
@@ -206,9 +218,65 @@ bool has_transparency(const Image& image) {
 
 }  // namespace
 
+namespace {
+
+/// Returns the texture coordinate set that the meshes of a material have
+/// (GltfDocument::tangent_texcoords()).
+int set_of_meshes(const GltfMaterial& material) {
+    for (const TextureSlot slot :
+         {TextureSlot::normal, TextureSlot::clearcoat_normal, TextureSlot::anisotropy}) {
+        if (find_texture(material, slot) != nullptr) return material.texcoords_of(slot).set;
+    }
+    return 0;
+}
+
+float share(float factor) {
+    return std::clamp(factor, 0.0F, 1.0F);
+}
+
+}  // namespace
+
+void HighTextures::add_texture(const std::filesystem::path& model, const MapAppearance& appearance,
+                               std::size_t material, TextureSlot slot,
+                               std::optional<SurfaceTexture>& target, Report& report) {
+    const GltfMaterial& source = appearance.materials[material];
+    if (find_texture(source, slot) == nullptr) return;
+    if (source.texcoords_of(slot).set != set_of_meshes(source)) {
+        const char* name = slot == TextureSlot::base_color ? "color" : slot_info(slot).name;
+        report.add(
+            fmt::format("{} texture with other texture coordinates than the normal map", name),
+            "material", material, "is left out");
+        return;
+    }
+    target = texture(model, appearance, source, slot);
+    ++textures_[slot];
+}
+
+void HighTextures::add_surface(const std::filesystem::path& model, const MapAppearance& appearance,
+                               std::size_t index, HighMaterial& material, Report& report) {
+    const GltfMaterial& source = appearance.materials[index];
+    material.roughness = share(source.metallic_roughness->roughness);
+    material.metallic = share(source.metallic_roughness->metallic);
+    add_texture(model, appearance, index, TextureSlot::metallic_roughness, material.surface_texture,
+                report);
+    material.occlusion_strength = share(source.occlusion_strength);
+    add_texture(model, appearance, index, TextureSlot::occlusion, material.occlusion_texture,
+                report);
+}
+
+void HighTextures::add_emission(const std::filesystem::path& model, const MapAppearance& appearance,
+                                std::size_t index, HighMaterial& material, Report& report) {
+    const GltfMaterial& source = appearance.materials[index];
+    add_texture(model, appearance, index, TextureSlot::emission, material.emission_texture, report);
+    // Without its texture, the surface would glow as a whole.
+    const bool is_left_out = source.emission_texture && !material.emission_texture;
+    if (!is_left_out) material.emission = glm::max(source.emission, 0.0F);
+}
+
 void HighTextures::add(const std::filesystem::path& file, const Mesh& mesh,
                        const MapAppearance& appearance, const HighTextureOptions& options,
-                       bool with_colors, Report& report) {
+                       const HighProperties& properties, Report& report) {
+    const bool with_colors = properties.colors;
     HighMaterials detail{&mesh, {}, {}};
     for (std::size_t i = 0; i < appearance.materials.size(); ++i) {
         const GltfMaterial& source = appearance.materials[i];
@@ -225,18 +293,14 @@ void HighTextures::add(const std::filesystem::path& file, const Mesh& mesh,
                 add_alpha({source.alpha_mode, source.alpha_cutoff});
             }
         }
-        const bool has_texture = with_colors && !options.color && source.diffuse_texture;
-        const bool differs_in_texcoords = has_texture && source.normal_map &&
-                                          source.texcoords_of(TextureSlot::normal).set !=
-                                              source.texcoords_of(TextureSlot::base_color).set;
-        if (differs_in_texcoords) {
-            report.add("color texture with other texture coordinates than the normal map",
-                       "material", i, "is left out");
-        } else if (has_texture) {
-            material.color_texture =
-                color(texture(file, appearance, source, TextureSlot::base_color), options.assumed);
-            ++color_textures_;
+        if (with_colors && !options.color) {
+            add_texture(file, appearance, i, TextureSlot::base_color, material.color_texture,
+                        report);
+            if (material.color_texture)
+                material.color_texture = color(*material.color_texture, options.assumed);
         }
+        if (properties.surfaces) add_surface(file, appearance, i, material, report);
+        if (properties.emission) add_emission(file, appearance, i, material, report);
         detail.materials.push_back(std::move(material));
     }
     // Textures that options give apply to the whole mesh.
@@ -245,12 +309,12 @@ void HighTextures::add(const std::filesystem::path& file, const Mesh& mesh,
     if (has_normal_map || has_color) detail.otherwise.emplace();
     const auto set_textures = [&](HighMaterial& material) {
         if (has_normal_map) {
-            const SurfaceTexture texture{.image = image(*options.normal_map, ImageUse::data)};
+            const SurfaceTexture texture{.image = image(*options.normal_map, TextureSlot::normal)};
             material.normal_map = normal_map(texture, 1.0F, options.assumed);
         }
         if (!has_color) return;
         material.color_texture =
-            color({.image = image(*options.color, ImageUse::color)}, options.assumed);
+            color({.image = image(*options.color, TextureSlot::base_color)}, options.assumed);
         if (!has_transparency(*material.color_texture->image)) return;
         material.opacity = 1.0F;
         add_alpha({AlphaMode::blend, 0.5F});
@@ -259,15 +323,17 @@ void HighTextures::add(const std::filesystem::path& file, const Mesh& mesh,
         set_textures(material);
     if (detail.otherwise) set_textures(*detail.otherwise);
     normal_maps_ += has_normal_map ? 1 : 0;
-    color_textures_ += has_color ? 1 : 0;
+    if (has_color) ++textures_[TextureSlot::base_color];
     materials_.push_back(std::move(detail));
 }
 
 std::string HighTextures::description() const {
     std::string text;
     if (normal_maps_ > 0) text = counted(normal_maps_, "normal map") + " added to their normals";
-    if (color_textures_ > 0)
-        text += (text.empty() ? "" : ", ") + counted(color_textures_, "color texture");
+    for (const auto& [slot, count] : textures_) {
+        const std::string name = slot == TextureSlot::base_color ? "color" : slot_info(slot).name;
+        text += (text.empty() ? "" : ", ") + counted(count, name + " texture");
+    }
     return text;
 }
 

@@ -29,14 +29,21 @@ namespace relief::tools {
 ModelPairs pair_models(std::span<const NamedModel> high, const NamedModel& low,
                        PartMatching matching);
 
+/// The properties of high materials that are read besides normal maps.
+struct HighProperties {
+    bool colors = false;    ///< With opacity.
+    bool surfaces = false;  ///< Roughness, metalness and occlusion.
+    bool emission = false;
+};
+
 /// The textures of the high models, decoded.
 class HighTextures {
   public:
-    /// Adds the textures of a mesh. The mesh must keep its address.
-    /// \param report  counts color textures with other texture coordinates, which are left out
+    /// Adds the materials of a mesh with their textures. The mesh must keep its address.
+    /// \param report  counts textures with other texture coordinates, which are left out
     /// \throws FileError if an image cannot be read
     void add(const std::filesystem::path& file, const Mesh& mesh, const MapAppearance& appearance,
-             const HighTextureOptions& options, bool with_colors, Report& report);
+             const HighTextureOptions& options, const HighProperties& properties, Report& report);
 
     [[nodiscard]] const std::vector<HighMaterials>& materials() const { return materials_; }
 
@@ -44,14 +51,15 @@ class HighTextures {
     /// the same cutoff. Absent: all are opaque.
     [[nodiscard]] const std::optional<BakedAlpha>& alpha() const { return alpha_; }
 
-    /// "1 normal map added to their normals, 2 color textures"; empty if there are none.
+    /// "1 normal map added to their normals, 2 color textures, 1 emission texture"; empty if there
+    /// are none.
     [[nodiscard]] std::string description() const;
 
   private:
     std::shared_ptr<const Image> image(const std::filesystem::path& model,
                                        const MapAppearance& appearance, std::size_t index,
-                                       ImageUse use);
-    std::shared_ptr<const Image> image(const std::filesystem::path& file, ImageUse use);
+                                       TextureSlot slot);
+    std::shared_ptr<const Image> image(const std::filesystem::path& file, TextureSlot slot);
     /// Returns a texture that the material has.
     SurfaceTexture texture(const std::filesystem::path& model, const MapAppearance& appearance,
                            const GltfMaterial& material, TextureSlot slot);
@@ -61,15 +69,23 @@ class HighTextures {
     /// \throws FileError if the image states another kind than colors
     [[nodiscard]] SurfaceTexture color(const SurfaceTexture& texture,
                                        const AssumedKinds& assumed) const;
+    /// Sets a texture of a material, if it has one at the texture coordinates of its meshes.
+    void add_texture(const std::filesystem::path& model, const MapAppearance& appearance,
+                     std::size_t material, TextureSlot slot, std::optional<SurfaceTexture>& target,
+                     Report& report);
+    void add_surface(const std::filesystem::path& model, const MapAppearance& appearance,
+                     std::size_t index, HighMaterial& material, Report& report);
+    void add_emission(const std::filesystem::path& model, const MapAppearance& appearance,
+                      std::size_t index, HighMaterial& material, Report& report);
     void add_alpha(const BakedAlpha& alpha);
 
     std::vector<HighMaterials> materials_;
-    std::map<std::string, std::shared_ptr<const Image>> images_;  ///< By file, index and use.
+    std::map<std::string, std::shared_ptr<const Image>> images_;  ///< By file, index and kind.
     std::map<const Image*, std::map<std::string, std::string>> metadata_;
     std::map<const Image*, std::filesystem::path> names_;  ///< Files, or images of models.
     std::optional<BakedAlpha> alpha_;
     std::size_t normal_maps_ = 0;
-    std::size_t color_textures_ = 0;
+    std::map<TextureSlot, std::size_t> textures_;  ///< The numbers of the others.
 };
 
 /// The high meshes of a pair, which are adjacent in BakeModels::high.

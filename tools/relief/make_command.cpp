@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command `relief make`. Tests: tests/tools/relief_make_test.cpp.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <numbers>
 #include <set>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/error_bound.h"
@@ -54,8 +57,10 @@ void check_outputs(const MakeCommand& command, const JobList& list) {
     std::vector<std::filesystem::path> files;
     std::set<std::filesystem::path> inputs, outputs;
     for (const Job& job : list.jobs) {
-        inputs.insert(identity_of(job.input));
-        files.push_back(job.input);
+        for (const std::filesystem::path& file : sources_of(command.request, job)) {
+            inputs.insert(identity_of(file));
+            files.push_back(file);
+        }
     }
     for (const Job& job : list.jobs) {
         for (const std::filesystem::path& file : outputs_of(command.request, job.output)) {
@@ -85,6 +90,11 @@ Json options_json(const MakeCommand& command) {
                  {"occlusion_rays", asset.occlusion ? asset.occlusion_rays : 0},
                  {"lods", asset.levels},
                  {"for", enum_name(command.request.engine)}};
+    json["layers"] =
+        json_list(asset.layers, [](LayerKind kind) -> Json { return make::layer_name(kind); });
+    json["with"] =
+        json_list(command.request.more_sources,
+                  [](const std::filesystem::path& file) -> Json { return file.string(); });
     json["loss"] = command.request.measures_loss;
     json["max_error"] = or_null(command.request.limits.normals.degrees);
     json["max_error_kind"] = enum_name(command.request.limits.normals.statistic());
@@ -99,6 +109,14 @@ bool has_page(const ReportOptions& report) {
     return report.file && extension_of(*report.file) == ".html";
 }
 
+/// "height,curvature"
+std::string names_of_layers(const std::vector<LayerKind>& layers) {
+    std::vector<std::string> names;
+    for (const LayerKind kind : layers)
+        names.push_back(make::layer_name(kind));
+    return fmt::format("{}", fmt::join(names, ","));
+}
+
 /// The line that repeats a job, with all options that change the asset.
 std::string repeating_line(const MakeCommand& command, const Job& job) {
     const make::AssetOptions& asset = command.request.asset;
@@ -110,6 +128,9 @@ std::string repeating_line(const MakeCommand& command, const Job& job) {
                            : "none");
     if (!asset.repair) line += " --no-repair";
     if (asset.keep_texcoords) line += " --keep-uvs";
+    for (const std::filesystem::path& file : command.request.more_sources)
+        line += " --with " + quoted(file);
+    if (!asset.layers.empty()) line += " --layers " + names_of_layers(asset.layers);
     if (command.request.measures_loss) line += " --loss";
     const LossLimits& limits = command.request.limits;
     if (limits.normals.degrees) line += fmt::format(" --max-error {}", *limits.normals.degrees);
@@ -128,8 +149,8 @@ ExitCode explain(const MakeCommand& command, const JobList& list) {
         SourceFacts facts;
         Findings findings;
         Stages stages(command.general.quiet);
-        const make::AssetSource source =
-            stages.run("read", [&] { return read_source(job.input, facts, findings); });
+        const make::AssetSource source = stages.run(
+            "read", [&] { return read_source(sources_of(command.request, job), facts, findings); });
         print_entry("plan", fmt::format("{} -> {}", job.input.string(), job.output.string()));
         print_entry("", lines_of(plan_of(command.request, source), command.general.threads));
     }
@@ -206,6 +227,11 @@ ExitCode make(const CLI::App& app, const MakeCommand& command) {
                                      command.request.stages_folder->string()),
                          "make a single asset without an output folder");
     }
+    if (!command.request.more_sources.empty() && !list.is_single()) {
+        throw UsageError(fmt::format("--with {}: is a part of the model of one asset",
+                                     command.request.more_sources.front().string()),
+                         "make a single asset without an output folder");
+    }
     set_thread_limit(command.general.threads);
     if (command.explain) return explain(command, list);
     check_outputs(command, list);
@@ -213,6 +239,23 @@ ExitCode make(const CLI::App& app, const MakeCommand& command) {
         {"tool", "relief make"}, {"version", version()}, {"options", options_json(command)}};
     return list.is_single() ? make_one(app, command, list.jobs.front(), head)
                             : make_all(app, command, list, head);
+}
+
+/// Parses "height,curvature".
+std::vector<LayerKind> parse_layers(const std::string& subject, const std::string& text) {
+    const Choices<LayerKind> choices = {{"height", LayerKind::height},
+                                        {"curvature", LayerKind::curvature},
+                                        {"position", LayerKind::position}};
+    std::vector<LayerKind> layers;
+    std::istringstream names(text);
+    for (std::string name; std::getline(names, name, ',');) {
+        const auto kind = parse_choice<LayerKind>(subject, name, choices);
+        if (std::ranges::find(layers, kind) != layers.end())
+            throw UsageError(fmt::format("{}: {} is named twice", subject, name));
+        layers.push_back(kind);
+    }
+    if (layers.empty()) throw UsageError(subject + ": names no layer");
+    return layers;
 }
 
 /// Parses "2048" or "2048x1024".
@@ -227,6 +270,15 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
               "IN OUT: the dense model to read (.glb .gltf .obj .ply .stl .off) and the asset to "
               "write (.glb .gltf). With -o: any number of models to read. Skinned and animated "
               "models are refused.");
+    add_repeatable(
+        app, "--with", "FILE",
+        "A further file of the dense model, in the same space as IN. Can be repeated. Only "
+        "for one asset.",
+        [&command](const std::string&, const std::string& text) {
+            readable_format(text);
+            command.request.more_sources.emplace_back(text);
+        })
+        .group("Source");
     const std::string shape = "Shape";
     add_value(app, "--triangles", "N", "The number of triangles of the asset. Default: 5000.",
               [&asset](const std::string& subject, const std::string& text) {
@@ -290,6 +342,14 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
               [&asset](const std::string& subject, const std::string& text) {
                   asset.occlusion_rays = parse_integer(subject, text, 0, 4096);
                   asset.occlusion = asset.occlusion_rays > 0;
+              })
+        .group(maps);
+    add_value(app, "--layers", "NAMES",
+              "Also write further layers, from the same rays, as PNG files of 16 bits beside the "
+              "asset: height (of the model above the asset), curvature, position; several are "
+              "separated by commas.",
+              [&asset](const std::string& subject, const std::string& text) {
+                  asset.layers = parse_layers(subject, text);
               })
         .group(maps);
     const std::string output = "Output";

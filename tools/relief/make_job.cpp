@@ -16,6 +16,7 @@
 
 #include "common/model_file.h"
 #include "file_replacement.h"
+#include "make_engine.h"
 #include "make_loss.h"
 #include "make_pictures.h"
 #include "make_stages.h"
@@ -48,75 +49,6 @@ double processor_seconds() {
     return seconds(use.ru_utime) + seconds(use.ru_stime);
 }
 
-/// Engines that read the maps of glTF files in their convention need no other files.
-bool has_map_files(Engine engine) {
-    return engine == Engine::unity || engine == Engine::unreal;
-}
-
-/// "rock_N.png" for rock.glb.
-std::filesystem::path map_file(const std::filesystem::path& output, const std::string& suffix) {
-    return output.parent_path() / (output.stem().string() + suffix + ".png");
-}
-
-/// Returns the normal map with the direction of green that an engine reads. The code of zero is
-/// 127.5, so that the opposite of each code exists.
-Image normal_map_for(const Image& map, Green green) {
-    Image result = map;
-    if (green == Green::up) return result;
-    const std::span<std::uint8_t> samples = result.as<std::uint8_t>();
-    for (std::size_t i = 1; i < samples.size(); i += 3)
-        samples[i] = static_cast<std::uint8_t>(255 - samples[i]);
-    return result;
-}
-
-/// Packs the occlusion with the roughness 1 and the metalness 0 of the asset's material.
-Image packed_map_for(const Image& occlusion, const EngineRules& rules) {
-    Image packed;
-    packed.width = occlusion.width;
-    packed.height = occlusion.height;
-    packed.channels = rules.channels;
-    std::vector<std::uint8_t> samples(packed.sample_count());
-    const std::span<const std::uint8_t> open = occlusion.as<std::uint8_t>();
-    const auto channels = static_cast<std::size_t>(rules.channels);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        switch (rules.packed[i % channels]) {
-            case PackedChannel::occlusion:
-                samples[i] = open[i / channels];
-                break;
-            case PackedChannel::roughness:
-                samples[i] = 255;
-                break;
-            default:
-                samples[i] = 0;
-        }
-    }
-    packed.samples = std::move(samples);
-    return packed;
-}
-
-void write_engine_maps(const MakeRequest& request, const std::filesystem::path& output,
-                       const make::Asset& asset) {
-    if (!has_map_files(request.engine)) return;
-    const EngineRules& rules = rules_of(request.engine);
-    NormalMapFormat format;
-    format.bits = 8;
-    format.green = rules.green;
-    write_image(map_file(output, rules.normal_name), normal_map_for(asset.normal_map, rules.green),
-                normal_map_metadata(format));
-    if (asset.occlusion_map) {
-        MapDescription packed{.kind = MapKind::packed};
-        packed.detail = enum_name(request.engine);
-        packed.color_space = ColorSpace::data;
-        write_image(map_file(output, rules.packed_name),
-                    packed_map_for(*asset.occlusion_map, rules), write_description(packed, 8));
-    }
-    if (asset.color_map) {
-        write_image(
-            map_file(output, "_color"), *asset.color_map,
-            write_description({.kind = MapKind::color, .color_space = ColorSpace::srgb}, 8));
-    }
-}
-
 std::string atlas_text(const AtlasStats& stats, const glm::ivec2& size) {
     return fmt::format("{}, {:.1f} % of {} x {} texels used, mean stretch {:.3f}",
                        counted(stats.charts, "chart"), 100.0 * stats.used, size.x, size.y,
@@ -132,6 +64,57 @@ Json atlas_json(const AtlasStats& stats) {
             {"safe_mip_level", or_null(stats.safe_mip_level)}};
 }
 
+/// ", opacity in alpha"
+std::string map_note(const make::Asset& asset, const make::AssetMap& map) {
+    if (map.name == "color" && map.image->channels == 4) return ", opacity in alpha";
+    if (map.name == "emission" && asset.material.emission_strength != 1.0F)
+        return fmt::format(", times {:.4g}", asset.material.emission_strength);
+    const auto range = map.metadata.find("relief:range");
+    if (map.slots.empty() && range != map.metadata.end()) {
+        const double limit = std::stod(range->second);
+        return fmt::format(", {:.4g} to {:.4g}", -limit, limit);
+    }
+    return "";
+}
+
+/// The factors of the material that no map multiplies.
+std::string factors_text(const make::Asset& asset) {
+    const GltfMaterial& material = asset.material;
+    const MetallicRoughness& surface = *material.metallic_roughness;
+    const auto color_text = [](const glm::vec3& color) {
+        return fmt::format("({:.3g}, {:.3g}, {:.3g})", color.r, color.g, color.b);
+    };
+    std::vector<std::string> factors;
+    if (!asset.color_map) factors.push_back("color " + color_text(surface.base_color));
+    if (!asset.color_map && material.opacity < 1.0F)
+        factors.push_back(fmt::format("opacity {:.3g}", material.opacity));
+    if (!asset.surface_map) {
+        factors.push_back(fmt::format("roughness {:.3g}", surface.roughness));
+        factors.push_back(fmt::format("metalness {:.3g}", surface.metallic));
+    }
+    if (!asset.emission_map && material.emission_factor != glm::vec3(0.0F)) {
+        factors.push_back("emission " +
+                          color_text(material.emission_factor * material.emission_strength));
+    }
+    return fmt::format("{}", fmt::join(factors, ", "));
+}
+
+/// The factors with the names of scene files. The opacity is a factor of the color.
+Json material_json(const GltfMaterial& material) {
+    const auto color_json = [](const glm::vec3& color) -> Json {
+        return {color.r, color.g, color.b};
+    };
+    const MetallicRoughness& surface = *material.metallic_roughness;
+    return {{"base_color", color_json(surface.base_color)},
+            {"opacity", material.opacity},
+            {"roughness", surface.roughness},
+            {"metallic", surface.metallic},
+            {"emission", color_json(material.emission_factor)},
+            {"emission_strength", material.emission_strength},
+            {"alpha_mode", enum_name(material.alpha_mode)},
+            {"double_sided", material.double_sided}};
+}
+
 std::vector<std::string> map_lines(const MadeAsset& made) {
     const make::Asset& asset = made.asset;
     const BakeResult& bake = asset.bake;
@@ -139,27 +122,31 @@ std::vector<std::string> map_lines(const MadeAsset& made) {
         "normals {} x {}: {} baked, {} missed; the source is {:.3g} to {:.3g} outside",
         asset.normal_map.width, asset.normal_map.height, counted(bake.texels_baked, "texel"),
         bake.texels_missed, bake.min_height, bake.max_height)};
-    if (asset.occlusion_map) {
-        lines.push_back(fmt::format("occlusion {} x {}: {:.3g} million rays",
-                                    asset.occlusion_map->width, asset.occlusion_map->height,
+    for (const make::AssetMap& map : make::maps_of(asset)) {
+        if (map.name == "normal") continue;
+        lines.push_back(fmt::format("{} {} x {}{}", map.content, map.image->width,
+                                    map.image->height, map_note(asset, map)));
+    }
+    if (bake.occlusion_rays > 0) {
+        lines.push_back(fmt::format("{:.3g} million rays for occlusion",
                                     static_cast<double>(bake.occlusion_rays) / 1e6));
     }
-    if (asset.color_map) {
-        lines.push_back(fmt::format("colors {} x {}{}", asset.color_map->width,
-                                    asset.color_map->height,
-                                    asset.color_map->channels == 4 ? ", opacity in alpha" : ""));
-    }
+    const std::string factors = factors_text(asset);
+    if (!factors.empty()) lines.push_back("without a map: " + factors);
     return lines;
 }
 
 Json maps_json(const make::Asset& asset) {
-    const auto map_json = [](const char* content, const Image& image) -> Json {
-        return {{"content", content}, {"width", image.width}, {"height", image.height}};
-    };
-    Json maps = Json::array({map_json("normals", asset.normal_map)});
-    if (asset.occlusion_map) maps.push_back(map_json("occlusion", *asset.occlusion_map));
-    if (asset.color_map) maps.push_back(map_json("colors", *asset.color_map));
+    Json maps = Json::array();
+    for (const make::AssetMap& map : make::maps_of(asset)) {
+        Json json = {
+            {"content", map.content}, {"width", map.image->width}, {"height", map.image->height}};
+        const auto range = map.metadata.find("relief:range");
+        if (range != map.metadata.end()) json["range"] = std::stod(range->second);
+        maps.push_back(std::move(json));
+    }
     return {{"maps", maps},
+            {"material", material_json(asset.material)},
             {"texels_baked", asset.bake.texels_baked},
             {"texels_missed", asset.bake.texels_missed},
             {"rays", asset.bake.rays},
@@ -210,18 +197,6 @@ Json stages_json(const MadeAsset& made, const Stages& stages) {
     });
 }
 
-/// The asset, and for some engines its maps.
-std::vector<std::filesystem::path> asset_files_of(const MakeRequest& request,
-                                                  const std::filesystem::path& output) {
-    std::vector<std::filesystem::path> files = {output};
-    if (!has_map_files(request.engine)) return files;
-    const EngineRules& rules = rules_of(request.engine);
-    files.push_back(map_file(output, rules.normal_name));
-    if (request.asset.occlusion) files.push_back(map_file(output, rules.packed_name));
-    files.push_back(map_file(output, "_color"));
-    return files;
-}
-
 /// Makes an asset from file to file, once or until limits hold.
 class FileMaker {
   public:
@@ -243,7 +218,8 @@ class FileMaker {
     Stages& stages_;
     make::AssetOptions options_;
     make::AssetSource source_;
-    std::unique_ptr<LossMeter> meter_;  ///< Created when it is needed.
+    std::unique_ptr<LossMeter> meter_;              ///< Created when it is needed.
+    std::vector<std::filesystem::path> map_files_;  ///< Beside the asset.
     MadeAsset made_;
 };
 
@@ -260,7 +236,7 @@ void FileMaker::run_stage(std::string_view name, const std::function<void()>& wo
 void FileMaker::read() {
     Progress opened;
     const ProgressScope scope(opened);
-    source_ = read_source(job_.input, made_.source, made_.findings);
+    source_ = read_source(sources_of(request_, job_), made_.source, made_.findings);
     source_.name = job_.output.stem().string();
     made_.inputs = names_of(opened.files());
 }
@@ -289,7 +265,7 @@ void FileMaker::make_once() {
         made_.levels = about(job_.input, [&] {
             return make::write_asset(job_.output, made_.asset, options_.levels, report);
         });
-        write_engine_maps(request_, job_.output, made_.asset);
+        map_files_ = write_map_files(request_.engine, job_.output, made_.asset);
         made_.findings.add("write", report);
         made_.findings.add("kept stages", of_kept);
     });
@@ -305,7 +281,8 @@ void FileMaker::measure_loss() {
     Report report;
     try {
         if (!meter_) {
-            meter_ = std::make_unique<LossMeter>(job_.input, job_.output, options_.crease_angle);
+            meter_ = std::make_unique<LossMeter>(sources_of(request_, job_), job_.output,
+                                                 options_.crease_angle);
         }
         made_.loss = meter_->measure(job_.output, report);
     } catch (const shade::GpuError& error) {
@@ -353,10 +330,8 @@ MadeAsset FileMaker::run() {
         grow(*made_.attempts.back().next);
         made_.findings = of_source;
     }
-    for (const std::filesystem::path& file : asset_files_of(request_, job_.output)) {
-        const bool is_color = file == map_file(job_.output, "_color");
-        if (!is_color || made_.asset.color_map) made_.files.push_back(file);
-    }
+    made_.files.push_back(job_.output);
+    made_.files.insert(made_.files.end(), map_files_.begin(), map_files_.end());
     return std::move(made_);
 }
 
@@ -364,7 +339,9 @@ MadeAsset FileMaker::run() {
 
 std::vector<std::filesystem::path> outputs_of(const MakeRequest& request,
                                               const std::filesystem::path& output) {
-    std::vector<std::filesystem::path> files = asset_files_of(request, output);
+    std::vector<std::filesystem::path> files = {output};
+    for (const std::filesystem::path& file : map_files_of(request.engine, request.asset, output))
+        files.push_back(file);
     if (request.stages_folder) {
         for (const std::filesystem::path& file :
              StageFiles(*request.stages_folder, request.asset).all())
@@ -373,26 +350,42 @@ std::vector<std::filesystem::path> outputs_of(const MakeRequest& request,
     return files;
 }
 
+std::vector<std::filesystem::path> sources_of(const MakeRequest& request, const Job& job) {
+    std::vector<std::filesystem::path> files = {job.input};
+    files.insert(files.end(), request.more_sources.begin(), request.more_sources.end());
+    return files;
+}
+
 MadeAsset make_file(const MakeRequest& request, const Job& job, Stages& stages) {
     return FileMaker(request, job, stages).run();
 }
+
+namespace {
+
+/// " and 2 more files"
+std::string with_text(const std::vector<std::filesystem::path>& more) {
+    return more.empty() ? "" : " and " + counted(more.size(), "more file");
+}
+
+}  // namespace
 
 Summary summary_of(const MakeRequest& request, const Job& job, const MadeAsset& made,
                    const Stages& stages) {
     const make::Asset& asset = made.asset;
     Summary summary;
-    summary.add("read",
-                fmt::format("{}: {}, {}, {}{}{}", job.input.string(), made.source.format,
-                            counted(made.source.triangles, "triangle"),
-                            counted(made.source.vertices, "vertex", "vertices"),
-                            made.source.textures.empty() ? "" : ", ", made.source.textures),
-                {{"input", job.input.string()},
-                 {"output", job.output.string()},
-                 {"source",
-                  {{"format", made.source.format},
-                   {"triangles", made.source.triangles},
-                   {"vertices", made.source.vertices},
-                   {"usable_triangles", asset.source_triangles}}}});
+    summary.add(
+        "read",
+        fmt::format("{}{}: {}, {}, {}{}{}", job.input.string(), with_text(request.more_sources),
+                    made.source.format, counted(made.source.triangles, "triangle"),
+                    counted(made.source.vertices, "vertex", "vertices"),
+                    made.source.textures.empty() ? "" : ", ", made.source.textures),
+        {{"input", job.input.string()},
+         {"output", job.output.string()},
+         {"source",
+          {{"format", made.source.format},
+           {"triangles", made.source.triangles},
+           {"vertices", made.source.vertices},
+           {"usable_triangles", asset.source_triangles}}}});
     summary.add(
         "asset",
         fmt::format("{}, {}", counted(asset.mesh.triangles.size(), "triangle"),

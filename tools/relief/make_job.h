@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ namespace relief::tools {
 
 struct MakeRequest {
     make::AssetOptions asset;
+    std::vector<std::filesystem::path> more_sources;  ///< Further files of the dense model.
     Engine engine = Engine::gltf;
     bool measures_loss = false;  ///< Also without limits.
     LossLimits limits;
@@ -30,20 +32,24 @@ struct MakeRequest {
 
 /// What is known of the dense model after it is read.
 struct SourceFacts {
-    std::string format;  ///< "glTF"
+    std::string format;  ///< "glTF"; of the first file.
     std::size_t triangles = 0;
     std::size_t vertices = 0;
     std::string textures;  ///< HighTextures::description()
 };
 
-/// Reads a dense model in world space with its materials and textures.
+/// Reads the files of a dense model in world space with their materials and textures.
 ///
 /// Textures that are missing are left out, which is reported; so are cameras, lights, points and
-/// lines.
-/// \throws FileError if it cannot be read, or if it has skins, morph targets or animations, which
+/// lines, and the properties of materials that an asset cannot have.
+/// \param files  at least one
+/// \throws FileError if one cannot be read, or if it has skins, morph targets or animations, which
 ///         the asset would lose
-make::AssetSource read_source(const std::filesystem::path& file, SourceFacts& facts,
+make::AssetSource read_source(std::span<const std::filesystem::path> files, SourceFacts& facts,
                               Findings& findings);
+
+/// All files of the dense model of a job.
+std::vector<std::filesystem::path> sources_of(const MakeRequest& request, const Job& job);
 
 /// What a stage used besides the time in Stages.
 struct StageUse {

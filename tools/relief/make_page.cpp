@@ -61,7 +61,7 @@ std::string PageWriter::figures() const {
 std::string PageWriter::comparison() const {
     const glm::ivec2 size(960, 720);
     try {
-        AssetScenes scenes(job_.input, job_.output, request_.asset.crease_angle);
+        AssetScenes scenes(sources_of(request_, job_), job_.output, request_.asset.crease_angle);
         const AssetPictures pictures = scenes.draw(made_.asset, size);
         return fmt::format(
             "<figure class=\"comparison\">\n<div class=\"stack\">{}{}</div>\n"
@@ -170,13 +170,10 @@ std::string PageWriter::maps() const {
                                   counted(asset.atlas->charts, "chart"), 100.0 * asset.atlas->used)
                     : "the texture coordinates of the source";
     add(draw_charts(asset, glm::max(size / factor, glm::ivec2(1))), charts);
-    const auto size_text = [](const Image& image) {
-        return fmt::format("{} x {}", image.width, image.height);
-    };
-    add(asset.normal_map, "normals, " + size_text(asset.normal_map));
-    if (asset.color_map) add(*asset.color_map, "colors, " + size_text(*asset.color_map));
-    if (asset.occlusion_map)
-        add(*asset.occlusion_map, "occlusion, " + size_text(*asset.occlusion_map));
+    for (const make::AssetMap& map : make::maps_of(asset)) {
+        add(*map.image,
+            fmt::format("{}, {} x {}", map.content, map.image->width, map.image->height));
+    }
     return html;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -51,12 +52,47 @@ Scene source_scene(const std::filesystem::path& file, const std::filesystem::pat
     return load_scene(converted, options, ignored);
 }
 
-/// Removes all textures; the colors are gray.
+/// Adds the meshes of another scene without poses, with their materials and images.
+void add_scene(Scene& scene, Scene more) {
+    const std::size_t first_mesh = scene.meshes.size();
+    const auto first_material = static_cast<std::uint32_t>(scene.materials.size());
+    const std::size_t first_image = scene.images.size();
+    for (Shared<Mesh>& mesh : more.meshes) {
+        for (MaterialRange& range : mesh.edit().material_ranges) {
+            if (range.material) *range.material += first_material;
+        }
+        scene.meshes.push_back(std::move(mesh));
+    }
+    for (Material& material : more.materials) {
+        for (const TextureSlotInfo& slot : texture_slots) {
+            if (Texture* texture = find_texture(material, slot.slot)) texture->image += first_image;
+        }
+        scene.materials.push_back(std::move(material));
+    }
+    std::ranges::move(more.images, std::back_inserter(scene.images));
+    for (Instance& instance : more.instances) {
+        instance.mesh += first_mesh;
+        scene.instances.push_back(std::move(instance));
+    }
+}
+
+Scene source_scene(std::span<const std::filesystem::path> files,
+                   const std::filesystem::path& beside, std::optional<double> crease_angle) {
+    Scene scene = source_scene(files.front(), beside, crease_angle);
+    for (const std::filesystem::path& file : files.subspan(1))
+        add_scene(scene, source_scene(file, beside, crease_angle));
+    return scene;
+}
+
+/// Removes all textures; the colors are gray, and nothing is metallic or glows.
 Scene without_maps(Scene scene) {
     for (Material& material : scene.materials) {
-        material.normal_map.reset();
-        material.diffuse_texture.reset();
-        if (material.metallic_roughness) material.metallic_roughness->base_color = glm::vec3(0.8F);
+        for (const TextureSlotInfo& slot : texture_slots)
+            remove_texture(material, slot.slot);
+        material.emission = glm::vec3(0.0F);
+        if (!material.metallic_roughness) continue;
+        material.metallic_roughness->base_color = glm::vec3(0.8F);
+        material.metallic_roughness->metallic = 0.0F;
     }
     return scene;
 }
@@ -89,10 +125,10 @@ struct AssetScenes::Implementation {
     Scene asset;
 };
 
-AssetScenes::AssetScenes(const std::filesystem::path& source, const std::filesystem::path& asset,
-                         std::optional<double> crease_angle)
+AssetScenes::AssetScenes(std::span<const std::filesystem::path> sources,
+                         const std::filesystem::path& asset, std::optional<double> crease_angle)
     : implementation_(std::make_unique<Implementation>()) {
-    implementation_->source = source_scene(source, asset, crease_angle);
+    implementation_->source = source_scene(sources, asset, crease_angle);
     implementation_->asset = asset_scene(asset);
 }
 
@@ -137,10 +173,10 @@ struct LossMeter::Implementation {
     explicit Implementation(const Scene& source) : meter(context, source, {}, of_source) {}
 };
 
-LossMeter::LossMeter(const std::filesystem::path& source, const std::filesystem::path& beside,
-                     std::optional<double> crease_angle)
+LossMeter::LossMeter(std::span<const std::filesystem::path> sources,
+                     const std::filesystem::path& beside, std::optional<double> crease_angle)
     : implementation_(
-          std::make_unique<Implementation>(source_scene(source, beside, crease_angle))) {}
+          std::make_unique<Implementation>(source_scene(sources, beside, crease_angle))) {}
 
 LossMeter::~LossMeter() = default;
 

@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "relief/make/asset.h"
@@ -28,11 +29,11 @@ struct AssetPictures {
 /// A source and its asset, loaded to be drawn.
 class AssetScenes {
   public:
-    /// \param source  the file of the dense model; its materials are those of glTF
+    /// \param sources  the files of the dense model, at least one; materials are those of glTF
     /// \param asset   the written file
     /// \param crease_angle  for a source without normals
     /// \throws Error if nothing can be drawn
-    AssetScenes(const std::filesystem::path& source, const std::filesystem::path& asset,
+    AssetScenes(std::span<const std::filesystem::path> sources, const std::filesystem::path& asset,
                 std::optional<double> crease_angle);
     ~AssetScenes();
     AssetScenes(const AssetScenes&) = delete;
@@ -65,10 +66,10 @@ class AssetDrawer {
 /// Measures what assets lost against one source, whose pictures are drawn once.
 class LossMeter {
   public:
-    /// \param source, crease_angle  as for AssetScenes
+    /// \param sources, crease_angle  as for AssetScenes
     /// \param beside  a file in the folder for a temporary file
     /// \throws Error if nothing can be drawn
-    LossMeter(const std::filesystem::path& source, const std::filesystem::path& beside,
+    LossMeter(std::span<const std::filesystem::path> sources, const std::filesystem::path& beside,
               std::optional<double> crease_angle);
     ~LossMeter();
     LossMeter(const LossMeter&) = delete;

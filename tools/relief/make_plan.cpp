@@ -2,6 +2,7 @@
 // The plan of `relief make --explain`, with estimated times. Tests:
 // tests/make/relief_make_test.cpp.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <numbers>
@@ -32,6 +33,24 @@ constexpr double covered = 0.65;
 
 double texels_of(const glm::ivec2& size) {
     return static_cast<double>(size.x) * static_cast<double>(size.y);
+}
+
+}  // namespace
+
+namespace {
+
+/// What the rays of the bake give: "normals", "colors", ...
+std::vector<std::string> layers_of(const make::AssetOptions& options,
+                                   const make::AssetSource& source) {
+    const make::VaryingProperties varying = make::varying_properties(source.mesh, source);
+    std::vector<std::string> layers = {"normals"};
+    if (varying.color) layers.emplace_back("colors");
+    if (varying.surface) layers.emplace_back("roughness and metalness");
+    if (varying.occlusion) layers.emplace_back("occlusion textures");
+    if (varying.emission) layers.emplace_back("emission");
+    for (const LayerKind kind : options.layers)
+        layers.emplace_back(enum_name(kind));
+    return layers;
 }
 
 }  // namespace
@@ -70,8 +89,7 @@ std::vector<PlannedStage> plan_of(const MakeRequest& request, const make::AssetS
     plan.push_back(
         {"bake",
          fmt::format(
-             "{:.1f} million rays for normals{}{}", rays,
-             source.mesh.colors.empty() && source.materials.empty() ? "" : " and colors",
+             "{:.1f} million rays for {}{}", rays, fmt::join(layers_of(options, source), ", "),
              options.occlusion ? fmt::format(", {:.0f} million for occlusion", occlusion) : ""),
          costs.prepare * dense + costs.bake * rays + costs.occlusion * occlusion});
     plan.push_back({"write",

@@ -4,7 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <set>
+#include <span>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "common/model_file.h"
@@ -44,57 +49,153 @@ std::string fault_of(const MapAppearance& appearance, std::size_t image) {
     return fmt::format("image {} is missing", file->string());
 }
 
+/// The textures that maps of the asset get.
+constexpr std::array transferred_slots = {TextureSlot::normal, TextureSlot::base_color,
+                                          TextureSlot::metallic_roughness, TextureSlot::occlusion,
+                                          TextureSlot::emission};
+
+bool is_transferred(TextureSlot slot) {
+    return std::ranges::find(transferred_slots, slot) != transferred_slots.end();
+}
+
 /// Removes textures whose images are missing.
 void drop_missing_textures(MapAppearance& appearance, Report& report) {
     for (std::size_t i = 0; i < appearance.materials.size(); ++i) {
         GltfMaterial& material = appearance.materials[i];
-        const auto is_missing = [&](TextureSlot slot) {
+        for (const TextureSlot slot : transferred_slots) {
             const Texture* texture = find_texture(material, slot);
-            if (texture == nullptr) return false;
+            if (texture == nullptr) continue;
             const std::string fault = fault_of(appearance, texture->image);
-            if (fault.empty()) return false;
+            if (fault.empty()) continue;
             report.add(fmt::format("{} texture that cannot be read", slot_info(slot).name),
                        "material", i, fmt::format("is left out: {}", fault));
-            return true;
-        };
-        if (is_missing(TextureSlot::normal)) material.normal_map.reset();
-        if (is_missing(TextureSlot::base_color)) material.diffuse_texture.reset();
+            remove_texture(material, slot);
+        }
     }
 }
 
-/// Reports textures that the asset does not get.
-void report_other_textures(const MapAppearance& appearance, Report& report) {
-    for (const TextureSlot slot :
-         {TextureSlot::metallic_roughness, TextureSlot::emission, TextureSlot::occlusion}) {
-        for (std::size_t i = 0; i < appearance.materials.size(); ++i) {
-            if (find_texture(appearance.materials[i], slot) == nullptr) continue;
-            report.add(fmt::format("{} texture of the source", slot_info(slot).name), "material", i,
+/// The materials of the triangles, as they are read and as the bake uses them.
+struct UsedMaterial {
+    std::size_t number = 0;  ///< For reports.
+    const GltfMaterial* source = nullptr;
+    HighMaterial* high = nullptr;
+};
+
+/// Reports what the asset does not get.
+void report_others(std::span<const UsedMaterial> used, Report& report) {
+    for (const auto& [number, material, high] : used) {
+        for (const TextureSlotInfo& slot : texture_slots) {
+            if (is_transferred(slot.slot) || find_texture(*material, slot.slot) == nullptr)
+                continue;
+            report.add(fmt::format("{} texture of the source", slot.name), "material", number,
                        "is not transferred");
         }
+        for (const std::string& extension : material->more_extensions)
+            report.add(extension + " of the source", "material", number, "is not transferred");
+        if (material->unlit)
+            report.add("unlit material of the source", "material", number, "is lit");
     }
 }
 
-/// Returns the roughness that all materials have; otherwise their mean, which is reported. Metallic
-/// surfaces are reported, too.
-float common_roughness(const MapAppearance& appearance, Report& report) {
-    if (appearance.materials.empty()) return 1.0F;
-    constexpr float tolerance = 0.01F;
-    float sum = 0.0F, min = 1.0F, max = 0.0F;
-    for (std::size_t i = 0; i < appearance.materials.size(); ++i) {
-        const MetallicRoughness& surface = *appearance.materials[i].metallic_roughness;
-        sum += surface.roughness;
-        min = std::min(min, surface.roughness);
-        max = std::max(max, surface.roughness);
-        if (surface.metallic > 0.0F) {
-            report.add("metallic material of the source", "material", i,
-                       "is not metallic in the asset");
+/// Returns the mode of alpha that all materials can have. Alpha that is cut where other materials
+/// blend, or have another limit, becomes 0 or 1 before it is baked.
+void set_alpha(std::span<const UsedMaterial> used, GltfMaterial& shared, Report& report) {
+    std::vector<float> cutoffs;
+    bool blends = false;
+    for (const UsedMaterial& material : used) {
+        blends = blends || material.source->alpha_mode == AlphaMode::blend;
+        if (material.source->alpha_mode == AlphaMode::mask)
+            cutoffs.push_back(material.source->alpha_cutoff);
+    }
+    if (cutoffs.empty() && !blends) return;
+    shared.alpha_mode = blends ? AlphaMode::blend : AlphaMode::mask;
+    const bool has_one_cutoff = !blends && std::ranges::count(cutoffs, cutoffs.front()) ==
+                                               static_cast<std::ptrdiff_t>(cutoffs.size());
+    if (has_one_cutoff) {
+        shared.alpha_cutoff = cutoffs.front();
+        return;
+    }
+    for (const auto& [number, material, high] : used) {
+        if (material->alpha_mode == AlphaMode::mask) {
+            high->alpha_cutoff = material->alpha_cutoff;
+            report.add(blends ? "masked material beside blended ones"
+                              : "masked materials with different alpha cutoffs",
+                       "material", number, "is cut to opacity 0 or 1");
+        } else if (blends && material->alpha_mode == AlphaMode::opaque) {
+            report.add("opaque material beside blended ones", "material", number,
+                       "is blended with opacity 1");
         }
     }
-    if (max - min <= tolerance) return max;
-    const float mean = sum / static_cast<float>(appearance.materials.size());
-    report.add("source with materials of different roughness", "source", 0,
-               fmt::format("has the mean, {:.2f}, everywhere", mean));
-    return mean;
+}
+
+/// Returns the beginning of a path in glTF: "extensions/KHR_materials_clearcoat/".
+std::string_view extension_path(std::string_view path) {
+    const std::string_view start = "extensions/";
+    if (!path.starts_with(start)) return {};
+    return path.substr(0, path.find('/', start.size()) + 1);
+}
+
+/// Returns whether a material has a texture of an extension.
+bool has_texture_of(const GltfMaterial& material, std::string_view extension) {
+    return std::ranges::any_of(texture_slots, [&](const TextureSlotInfo& slot) {
+        return std::string_view(slot.gltf).starts_with(extension) &&
+               find_texture(material, slot.slot) != nullptr;
+    });
+}
+
+/// Copies the factors of extensions that all materials share. The directions of anisotropy belong
+/// to the old texture coordinates.
+void set_shared_factors(std::span<const UsedMaterial> used, GltfMaterial& shared, Report& report) {
+    if (used.empty()) return;
+    const auto of = [](const UsedMaterial& material) -> const MetallicRoughness& {
+        return *material.source->metallic_roughness;
+    };
+    for_each_field<MetallicRoughness>([&](const auto& field) {
+        using Value = std::decay_t<decltype(field.default_value())>;
+        if constexpr (std::is_same_v<Value, float> || std::is_same_v<Value, glm::vec3> ||
+                      std::is_same_v<Value, std::optional<float>>) {
+            const std::string_view extension = extension_path(field.gltf);
+            if (extension.empty()) return;  // It is baked.
+            const Value first = of(used.front()).*field.member;
+            const bool is_shared = extension != "extensions/KHR_materials_anisotropy/" &&
+                                   std::ranges::all_of(used, [&](const UsedMaterial& material) {
+                                       return of(material).*field.member == first &&
+                                              !has_texture_of(*material.source, extension);
+                                   });
+            if (is_shared) {
+                (*shared.metallic_roughness).*field.member = first;
+                return;
+            }
+            for (const UsedMaterial& material : used) {
+                if (of(material).*field.member == field.default_value()) continue;
+                report.add(fmt::format("{} of single materials", field.label()), "material",
+                           material.number, "is not transferred");
+            }
+        }
+    });
+}
+
+void set_sides(std::span<const UsedMaterial> used, GltfMaterial& shared, Report& report) {
+    shared.double_sided = std::ranges::any_of(
+        used, [](const UsedMaterial& material) { return material.source->double_sided; });
+    if (!shared.double_sided) return;
+    for (const UsedMaterial& material : used) {
+        if (!material.source->double_sided) {
+            report.add("single-sided material beside double-sided ones", "material",
+                       material.number, "is double-sided");
+        }
+    }
+}
+
+/// If only some parts have texture coordinates, the others get (0, 0): their materials have no
+/// textures.
+void add_missing_texcoords(std::vector<MapModelPart>& parts) {
+    const auto has_texcoords = [](const MapModelPart& part) {
+        return !part.mesh.texcoords.empty();
+    };
+    if (std::ranges::none_of(parts, has_texcoords)) return;
+    for (MapModelPart& part : parts)
+        part.mesh.texcoords.resize(part.mesh.positions.size(), glm::vec2(0.0F));
 }
 
 std::size_t triangles_of(const MapModel& model) {
@@ -104,36 +205,87 @@ std::size_t triangles_of(const MapModel& model) {
     return count;
 }
 
-}  // namespace
+/// The models of a source.
+struct SourceModels {
+    std::vector<std::filesystem::path> files;
+    std::vector<MapAppearance> appearances;  ///< By file.
+    std::vector<MapModelPart> parts;         ///< Of all files; materials are numbered through.
+    glm::dvec3 origin{0.0};
+};
 
-make::AssetSource read_source(const std::filesystem::path& file, SourceFacts& facts,
-                              Findings& findings) {
-    Report report;
-    facts.format = format_name(readable_format(file));
+void add_model(const std::filesystem::path& file, SourceModels& models, SourceFacts& facts,
+               Report& report) {
+    const std::string format = format_name(readable_format(file));
     Model contents = read_model(file, report);
     if (const auto* document = std::get_if<GltfDocument>(&contents))
         require_static(file, *document, report);
     MapModel model =
         about(file, [&] { return map_model(std::move(contents), ModelSpace::world, report); });
-    facts.triangles = triangles_of(model);
-    MapAppearance appearance = std::move(model.appearance);
-    drop_missing_textures(appearance, report);
-    report_other_textures(appearance, report);
+    if (models.files.empty()) {
+        facts.format = format;
+        models.origin = model.origin;
+    } else {
+        move_to(model, models.origin);
+    }
+    facts.triangles += triangles_of(model);
+    std::size_t first = 0;
+    for (const MapAppearance& appearance : models.appearances)
+        first += appearance.materials.size();
+    for (MapModelPart& part : model.parts) {
+        for (MaterialRange& range : part.mesh.material_ranges) {
+            if (range.material) *range.material += static_cast<std::uint32_t>(first);
+        }
+        models.parts.push_back(std::move(part));
+    }
+    drop_missing_textures(model.appearance, report);
+    models.files.push_back(file);
+    models.appearances.push_back(std::move(model.appearance));
+}
+
+/// Returns the materials that triangles of the source have, in their order.
+std::vector<UsedMaterial> used_materials(const SourceModels& models, make::AssetSource& source) {
+    std::vector<const GltfMaterial*> all;
+    for (const MapAppearance& appearance : models.appearances) {
+        for (const GltfMaterial& material : appearance.materials)
+            all.push_back(&material);
+    }
+    std::set<std::size_t> numbers;
+    for (const MaterialRange& range : source.mesh.material_ranges) {
+        if (range.material && range.triangle_count > 0) numbers.insert(*range.material);
+    }
+    std::vector<UsedMaterial> used;
+    for (const std::size_t number : numbers)
+        used.push_back({number, all.at(number), &source.materials.at(number)});
+    return used;
+}
+
+}  // namespace
+
+make::AssetSource read_source(std::span<const std::filesystem::path> files, SourceFacts& facts,
+                              Findings& findings) {
+    Report report;
+    SourceModels models;
+    for (const std::filesystem::path& file : files)
+        add_model(file, models, facts, report);
+    const std::filesystem::path& file = files.front();
     make::AssetSource source;
-    source.origin = model.origin;
-    source.roughness = common_roughness(appearance, report);
-    source.mesh = about(file, [&] { return joined(std::move(model.parts)); });
+    source.origin = models.origin;
+    add_missing_texcoords(models.parts);
+    source.mesh = about(file, [&] { return joined(std::move(models.parts)); });
     facts.vertices = source.mesh.positions.size();
     HighTextures textures;
-    textures.add(file, source.mesh, appearance, {}, true, report);
-    const HighMaterials& materials = textures.materials().front();
-    source.materials = materials.materials;
-    source.otherwise = materials.otherwise;
-    if (textures.alpha()) {
-        source.alpha_mode = textures.alpha()->mode;
-        source.alpha_cutoff = textures.alpha()->cutoff;
+    constexpr HighProperties all{.colors = true, .surfaces = true, .emission = true};
+    for (std::size_t i = 0; i < models.files.size(); ++i) {
+        textures.add(models.files[i], source.mesh, models.appearances[i], {}, all, report);
+        const std::vector<HighMaterial>& added = textures.materials().back().materials;
+        source.materials.insert(source.materials.end(), added.begin(), added.end());
     }
     facts.textures = textures.description();
+    const std::vector<UsedMaterial> used = used_materials(models, source);
+    report_others(used, report);
+    set_alpha(used, source.shared, report);
+    set_shared_factors(used, source.shared, report);
+    set_sides(used, source.shared, report);
     findings.add("read", report);
     return source;
 }

@@ -5,13 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <string>
 
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image_file.h"
-#include "relief/mesh/map_description.h"
-#include "relief/mesh/normal_map.h"
 
 namespace relief::tools {
 namespace {
@@ -21,7 +18,11 @@ constexpr std::string_view bake_stage = "bake";
 }  // namespace
 
 StageFiles::StageFiles(const std::filesystem::path& folder, const make::AssetOptions& options)
-    : folder_(folder), stages_(make::stages_of(options)), has_occlusion_(options.occlusion) {}
+    : folder_(folder), stages_(make::stages_of(options)) {
+    maps_ = {"normal", "occlusion", "color", "orm", "emission"};
+    for (const LayerKind kind : options.layers)
+        maps_.push_back(make::layer_name(kind));
+}
 
 std::filesystem::path StageFiles::file_of(std::string_view stage, std::string_view ending) const {
     const auto number = std::ranges::find(stages_, stage) - stages_.begin() + 1;
@@ -33,9 +34,8 @@ std::vector<std::filesystem::path> StageFiles::all() const {
     for (const std::string& stage : stages_) {
         if (stage != bake_stage) files.push_back(file_of(stage, ".glb"));
     }
-    files.push_back(file_of(bake_stage, "-normal.png"));
-    if (has_occlusion_) files.push_back(file_of(bake_stage, "-occlusion.png"));
-    files.push_back(file_of(bake_stage, "-color.png"));
+    for (const std::string& map : maps_)
+        files.push_back(file_of(bake_stage, fmt::format("-{}.png", map)));
     return files;
 }
 
@@ -53,22 +53,9 @@ std::filesystem::path StageFiles::write_mesh(std::string_view stage, const Mesh&
 
 std::vector<std::filesystem::path> StageFiles::write_maps(const make::Asset& asset) const {
     std::vector<std::filesystem::path> files;
-    const auto write = [&](std::string_view ending, const Image& map,
-                           const std::map<std::string, std::string>& metadata) {
-        files.push_back(file_of(bake_stage, ending));
-        write_image(files.back(), map, metadata);
-    };
-    NormalMapFormat format;
-    format.bits = 8;
-    write("-normal.png", asset.normal_map, normal_map_metadata(format));
-    if (asset.occlusion_map) {
-        write("-occlusion.png", *asset.occlusion_map,
-              write_description({.kind = MapKind::occlusion, .color_space = ColorSpace::data}, 8));
-    }
-    if (asset.color_map) {
-        MapDescription colors{.kind = MapKind::color, .color_space = ColorSpace::srgb};
-        if (asset.color_map->channels == 4) colors.alpha = AlphaContent::opacity;
-        write("-color.png", *asset.color_map, write_description(colors, 8));
+    for (const make::AssetMap& map : make::maps_of(asset)) {
+        files.push_back(file_of(bake_stage, fmt::format("-{}.png", map.name)));
+        write_image(files.back(), *map.image, map.metadata);
     }
     return files;
 }

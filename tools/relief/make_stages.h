@@ -16,7 +16,7 @@
 namespace relief::tools {
 
 /// The files in a folder: a mesh for each stage of make::stages_of(), "02-decimate.glb", and the
-/// maps "05-bake-normal.png", "-occlusion" and "-color", with the numbers of the stages.
+/// maps with the names of make::maps_of(), "05-bake-normal.png".
 class StageFiles {
   public:
     StageFiles(const std::filesystem::path& folder, const make::AssetOptions& options);
@@ -38,7 +38,7 @@ class StageFiles {
 
     std::filesystem::path folder_;
     std::vector<std::string> stages_;
-    bool has_occlusion_;
+    std::vector<std::string> maps_;  ///< The names of all maps that an asset may have.
 };
 
 }  // namespace relief::tools

@@ -324,7 +324,8 @@ void check_map(const BakeMapOptions& map, const Mesh& low) {
 
 void check_layers(const BakeLayers& requested, const BakeLayers& prepared) {
     if ((requested.normals && !prepared.normals) || (requested.curvature && !prepared.curvature) ||
-        (requested.colors && !prepared.colors) || (requested.opacity && !prepared.opacity))
+        (requested.colors && !prepared.colors) || (requested.opacity && !prepared.opacity) ||
+        (requested.surface && !prepared.surface) || (requested.emission && !prepared.emission))
         throw InvalidInput("a map requests a layer that its Baker does not have");
     if (requested.occlusion) check(*requested.occlusion);
 }
@@ -445,6 +446,8 @@ LayerBounds BakeParts::bounds(const BakeLayers& layers) const {
             bounds.position = std::max(bounds.position,
                                        surface->high.largest_coordinate(layers.position_from_mesh));
         }
+        if (layers.emission)
+            bounds.emission = std::max(bounds.emission, surface->high.largest_emission());
     }
     return bounds;
 }

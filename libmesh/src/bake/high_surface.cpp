@@ -123,12 +123,20 @@ void report_missing(const Mesh& mesh, const HighMaterials* detail, std::size_t i
     if (!mesh.texcoords.empty() || detail == nullptr) return;
     if (layers.normals && has_normal_map(detail))
         report.add("normal map without texture coordinates", "mesh", index, "is left out");
-    if (!layers.colors || !detail->color_texcoords.empty()) return;
-    for (const HighMaterial& material : detail->materials) {
-        if (!material.color_texture) continue;
-        report.add("color texture without texture coordinates", "mesh", index, "is left out");
-        break;
-    }
+    if (!detail->color_texcoords.empty()) return;
+    const auto report_if = [&](const char* what, const auto& has_texture) {
+        if (std::ranges::any_of(detail->materials, has_texture))
+            report.add(what, "mesh", index, "is left out");
+    };
+    report_if("color texture without texture coordinates", [&](const HighMaterial& material) {
+        return layers.colors && material.color_texture;
+    });
+    report_if("surface texture without texture coordinates", [&](const HighMaterial& material) {
+        return layers.surface && (material.surface_texture || material.occlusion_texture);
+    });
+    report_if("emission texture without texture coordinates", [&](const HighMaterial& material) {
+        return layers.emission && material.emission_texture;
+    });
 }
 
 template <typename Value, typename Wide>
@@ -166,6 +174,22 @@ glm::dvec3 color_at(const SurfaceTexture& texture, const glm::dvec2& texcoord) {
 }
 
 namespace {
+
+/// Returns the largest linear value of the color channels of a texture.
+double largest_color(const SurfaceTexture& texture) {
+    const Image& image = *texture.image;
+    const auto channels = static_cast<std::size_t>(image.channels);
+    const std::size_t colors = channels < 3 ? 1 : 3;
+    const bool is_srgb = image.color_space == ColorSpace::srgb;
+    return std::visit(
+        [&](const auto& samples) {
+            auto largest = samples[0];
+            for (std::size_t i = 0; i < samples.size(); ++i)
+                if (i % channels < colors) largest = std::max(largest, samples[i]);
+            return linear_value(largest, is_srgb);
+        },
+        image.samples);
+}
 
 /// Returns the alpha of a texture; 1 if it has none.
 double alpha_at(const SurfaceTexture& texture, const glm::dvec2& texcoord) {
@@ -209,6 +233,11 @@ void check(const HighMaterials& detail) {
     if (detail.otherwise) all.push_back(*detail.otherwise);
     for (const HighMaterial& material : all) {
         if (material.color_texture) check(*material.color_texture, 1, "a color texture");
+        if (material.surface_texture)
+            check(*material.surface_texture, 1, "a texture of roughness and metalness");
+        if (material.occlusion_texture)
+            check(*material.occlusion_texture, 1, "an occlusion texture");
+        if (material.emission_texture) check(*material.emission_texture, 1, "an emission texture");
         if (material.normal_map) check(material.normal_map->texture, 3, "a normal map");
     }
     const std::size_t vertices = detail.mesh->positions.size();
@@ -280,8 +309,9 @@ HighSurface::Entry HighSurface::entry(const Mesh& mesh, std::size_t index,
     result.mesh = &mesh;
     const HighMaterials* detail = detail_of(mesh, options);
     report_missing(mesh, detail, index, layers, report);
-    if (layers.normals || layers.colors || layers.opacity) result.detail = detail;
-    if ((layers.colors || layers.opacity) && detail != nullptr) {
+    const bool has_textures = layers.colors || layers.opacity || layers.surface || layers.emission;
+    if (layers.normals || has_textures) result.detail = detail;
+    if (has_textures && detail != nullptr) {
         result.color_texcoords =
             detail->color_texcoords.empty() ? mesh.texcoords : detail->color_texcoords;
     }
@@ -378,9 +408,29 @@ glm::dvec3 HighSurface::color(const RayHit& hit) const {
     }
     const HighMaterial* hit_material = material(hit);
     if (hit_material == nullptr) return color;
-    color *= glm::dvec3(hit_material->color);
-    if (!hit_material->color_texture || entry.color_texcoords.empty()) return color;
-    return color * color_at(*hit_material->color_texture, color_texcoord(hit));
+    return color * glm::dvec3(hit_material->color) * textured(hit_material->color_texture, hit);
+}
+
+glm::dvec3 HighSurface::textured(const std::optional<SurfaceTexture>& texture,
+                                 const RayHit& hit) const {
+    if (!texture || entries_[hit.mesh].color_texcoords.empty()) return glm::dvec3(1.0);
+    return color_at(*texture, color_texcoord(hit));
+}
+
+glm::dvec3 HighSurface::surface(const RayHit& hit) const {
+    const HighMaterial* hit_material = material(hit);
+    if (hit_material == nullptr) return {1.0, 1.0, 0.0};
+    const glm::dvec3 texel = textured(hit_material->surface_texture, hit);
+    const double hidden = 1.0 - textured(hit_material->occlusion_texture, hit).r;
+    return {1.0 - static_cast<double>(hit_material->occlusion_strength) * hidden,
+            static_cast<double>(hit_material->roughness) * texel.g,
+            static_cast<double>(hit_material->metallic) * texel.b};
+}
+
+glm::dvec3 HighSurface::emission(const RayHit& hit) const {
+    const HighMaterial* hit_material = material(hit);
+    if (hit_material == nullptr) return glm::dvec3(0.0);
+    return glm::dvec3(hit_material->emission) * textured(hit_material->emission_texture, hit);
 }
 
 glm::dvec2 HighSurface::color_texcoord(const RayHit& hit) const {
@@ -398,8 +448,10 @@ double HighSurface::opacity(const RayHit& hit) const {
         const glm::uvec3& corners = entry.mesh->triangles[hit.triangle];
         opacity *= interpolated<glm::vec4>(entry.mesh->colors, corners, hit, glm::dvec4(0.0)).w;
     }
-    if (!hit_material->color_texture || entry.color_texcoords.empty()) return opacity;
-    return opacity * alpha_at(*hit_material->color_texture, color_texcoord(hit));
+    if (hit_material->color_texture && !entry.color_texcoords.empty())
+        opacity *= alpha_at(*hit_material->color_texture, color_texcoord(hit));
+    if (!hit_material->alpha_cutoff) return opacity;
+    return opacity >= static_cast<double>(*hit_material->alpha_cutoff) ? 1.0 : 0.0;
 }
 
 HighSurface::CurvatureRange HighSurface::curvature_range() const {
@@ -435,6 +487,25 @@ HighSurface::CurvatureRange HighSurface::curvature_range() const {
         if (below >= usual_share * area) break;
     }
     return range;
+}
+
+double HighSurface::largest_emission() const {
+    double largest = 0.0;
+    for (const Entry& entry : entries_) {
+        if (entry.detail == nullptr) continue;
+        const auto add = [&](const HighMaterial& material) {
+            const glm::dvec3 factor(material.emission);
+            const double brightest = std::max({factor.r, factor.g, factor.b});
+            if (brightest <= 0.0) return;
+            const bool has_texture = material.emission_texture && !entry.color_texcoords.empty();
+            largest = std::max(largest, has_texture
+                                            ? brightest * largest_color(*material.emission_texture)
+                                            : brightest);
+        };
+        std::ranges::for_each(entry.detail->materials, add);
+        if (entry.detail->otherwise) add(*entry.detail->otherwise);
+    }
+    return largest;
 }
 
 double HighSurface::largest_coordinate(const glm::dmat4& axes_from_mesh) const {

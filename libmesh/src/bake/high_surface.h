@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The high-poly meshes of a bake: a ray scene, and the attributes at a hit (normal, color,
-/// curvature, position). An attribute is prepared only if a layer needs it. Tests:
-/// tests/mesh/bake/bake_test.cpp, high_materials_test.cpp.
+/// curvature, position, surface, emission). An attribute is prepared only if a layer needs it.
+/// Tests: tests/mesh/bake/bake_test.cpp, high_materials_test.cpp.
 #pragma once
 
 #include <memory>
@@ -60,6 +60,13 @@ class HighSurface {
     /// Returns the opacity, 1 for opaque materials, if requested.
     [[nodiscard]] double opacity(const RayHit& hit) const;
 
+    /// Returns occlusion, roughness and metalness of the material, (1, 1, 0) without a material, if
+    /// requested.
+    [[nodiscard]] glm::dvec3 surface(const RayHit& hit) const;
+
+    /// Returns the linear RGB emission, black without a material, if requested.
+    [[nodiscard]] glm::dvec3 emission(const RayHit& hit) const;
+
     /// Bounds of the absolute curvature over all meshes, if requested.
     struct CurvatureRange {
         double usual = 0.0;  ///< Holds on 99% of the area.
@@ -69,6 +76,9 @@ class HighSurface {
 
     /// Returns the largest absolute coordinate of a position in other axes.
     [[nodiscard]] double largest_coordinate(const glm::dmat4& axes_from_mesh) const;
+
+    /// Returns a bound of the emission in any channel.
+    [[nodiscard]] double largest_emission() const;
 
   private:
     /// A mesh with its attributes.
@@ -84,6 +94,9 @@ class HighSurface {
                               Report& report);
     [[nodiscard]] const HighMaterial* material(const RayHit& hit) const;
     [[nodiscard]] glm::dvec2 color_texcoord(const RayHit& hit) const;
+    /// Returns the color of a texture at a hit; white without a texture or texture coordinates.
+    [[nodiscard]] glm::dvec3 textured(const std::optional<SurfaceTexture>& texture,
+                                      const RayHit& hit) const;
     /// All attributes of a triangle that a bake can read, independent of its first corner. They
     /// order triangles that coincide.
     [[nodiscard]] std::vector<std::uint32_t> attributes(const MetTriangle& met) const;

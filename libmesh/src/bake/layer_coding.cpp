@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Encodes the layers of a bake for image files. Tests: tests/tools/relief_bake_layers_test.cpp.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -77,10 +79,8 @@ Sample encode_value(const LayerCoding& coding, float value, bool& is_outside) {
         constexpr double largest = std::numeric_limits<Sample>::max();
         double place = static_cast<double>(value);
         double min = 0.0;
-        if (coding.is_signed()) {
-            place /= coding.range;
-            min = -1.0;
-        }
+        if (coding.is_signed() || coding.kind == LayerKind::emission) place /= coding.range;
+        if (coding.is_signed()) min = -1.0;
         is_outside = is_outside || !(place >= min && place <= 1.0);
         // NaN becomes 0.
         place = place >= min ? std::min(place, 1.0) : place < min ? min : 0.0;
@@ -90,9 +90,9 @@ Sample encode_value(const LayerCoding& coding, float value, bool& is_outside) {
         }
         if constexpr (std::is_same_v<Sample, std::uint8_t>) {
             static const SrgbCodes codes;
-            if (coding.kind == LayerKind::color) return codes.code(static_cast<float>(place));
+            if (coding.color_space() == ColorSpace::srgb) return codes.code(static_cast<float>(place));
         }
-        if (coding.kind == LayerKind::color)
+        if (coding.color_space() == ColorSpace::srgb)
             place = static_cast<double>(srgb_from_linear(static_cast<float>(place)));
         return static_cast<Sample>(std::round(largest * place));
     }
@@ -133,6 +133,26 @@ std::vector<std::byte> encode(std::span<const float> values, std::span<const Tex
     return bytes;
 }
 
+MapKind kind_of(LayerKind kind) {
+    switch (kind) {
+        case LayerKind::height:
+            return MapKind::height;
+        case LayerKind::occlusion:
+            return MapKind::occlusion;
+        case LayerKind::curvature:
+            return MapKind::curvature;
+        case LayerKind::position:
+            return MapKind::position;
+        case LayerKind::surface:
+            return MapKind::packed;
+        case LayerKind::emission:
+            return MapKind::emission;
+        case LayerKind::color:
+            break;
+    }
+    return MapKind::color;
+}
+
 }  // namespace
 
 std::span<const float> layer_values(LayerKind kind, const BakedRows& rows) {
@@ -145,14 +165,31 @@ std::span<const float> layer_values(LayerKind kind, const BakedRows& rows) {
             return rows.curvature;
         case LayerKind::position:
             return rows.positions;
+        case LayerKind::surface:
+            return rows.surface;
+        case LayerKind::emission:
+            return rows.emission;
         default:
             return rows.colors;
     }
 }
 
 ColorSpace LayerCoding::color_space() const {
-    if (kind != LayerKind::color) return ColorSpace::data;
+    if (kind != LayerKind::color && kind != LayerKind::emission) return ColorSpace::data;
     return bits == 32 ? ColorSpace::linear : ColorSpace::srgb;
+}
+
+std::map<std::string, std::string> layer_metadata(const LayerCoding& coding,
+                                                  std::optional<AlphaContent> alpha) {
+    MapDescription description{
+        .kind = kind_of(coding.kind), .color_space = coding.color_space(), .alpha = alpha};
+    if (coding.kind == LayerKind::surface) description.detail = "gltf";
+    std::map<std::string, std::string> metadata = write_description(description, coding.bits);
+    if (coding.bits == 32) return metadata;
+    if (coding.is_signed() || coding.kind == LayerKind::emission)
+        metadata["relief:range"] = fmt::format("{}", coding.range);
+    if (coding.is_signed()) metadata["relief:zero"] = fmt::format("{}", coding.zero_code());
+    return metadata;
 }
 
 double LayerCoding::strength() const {

@@ -213,6 +213,8 @@ LayerBake::LayerBake(const BakeLayers& layers, std::size_t first_texel, std::siz
     if (layers.positions) positions_.resize(texels);
     if (layers.colors) colors_.resize(texels);
     if (layers.opacity) opacity_.resize(texels);
+    if (layers.surface) surfaces_.resize(texels);
+    if (layers.emission) emission_.resize(texels);
 }
 
 std::size_t LayerBake::add(const HighSurface& high, std::span<const LayerHit> hits,
@@ -222,6 +224,8 @@ std::size_t LayerBake::add(const HighSurface& high, std::span<const LayerHit> hi
         if (layers_.curvature) curvature_[here.texel] += high.curvature(here.hit);
         if (layers_.colors) colors_[here.texel] += high.color(here.hit);
         if (layers_.opacity) opacity_[here.texel] += high.opacity(here.hit);
+        if (layers_.surface) surfaces_[here.texel] += high.surface(here.hit);
+        if (layers_.emission) emission_[here.texel] += high.emission(here.hit);
         if (layers_.positions) {
             positions_[here.texel] +=
                 glm::dvec3(layers_.position_from_mesh * glm::dvec4(high.position(here.hit), 1.0));
@@ -256,6 +260,8 @@ void LayerBake::store(std::size_t texel, const BakedRows& rows, std::size_t at) 
         rows.curvature[at] = hits > 0 ? static_cast<float>(curvature_[texel] / hits) : 0.0F;
     if (layers_.positions) store_mean(positions_[texel], hits, rows.positions, at);
     if (layers_.colors) store_mean(colors_[texel], hits, rows.colors, at);
+    if (layers_.surface) store_mean(surfaces_[texel], hits, rows.surface, at);
+    if (layers_.emission) store_mean(emission_[texel], hits, rows.emission, at);
     if (layers_.opacity)
         rows.opacity[at] = hits > 0 ? static_cast<float>(opacity_[texel] / hits) : 0.0F;
 }

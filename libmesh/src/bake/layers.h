@@ -33,6 +33,8 @@ inline constexpr std::array baked_layers = {
     BakedLayer{&BakedRows::positions, 3, false, [](const BakeLayers& l) { return l.positions; }},
     BakedLayer{&BakedRows::colors, 3, false, [](const BakeLayers& l) { return l.colors; }},
     BakedLayer{&BakedRows::opacity, 1, false, [](const BakeLayers& l) { return l.opacity; }},
+    BakedLayer{&BakedRows::surface, 3, false, [](const BakeLayers& l) { return l.surface; }},
+    BakedLayer{&BakedRows::emission, 3, false, [](const BakeLayers& l) { return l.emission; }},
 };
 
 /// \throws InvalidInput if the number of rays or the distance is out of range
@@ -79,13 +81,13 @@ struct LayerHit {
     std::uint32_t sample = 0;  ///< Index in the texel.
 };
 
-/// Sums occlusion, curvature, positions, colors and opacity over the samples of some texels.
+/// Sums all layers but normals and heights over the samples of some texels.
 class LayerBake {
   public:
     /// Returns whether any of these layers is requested.
     static bool is_requested(const BakeLayers& layers) {
         return layers.occlusion || layers.curvature || layers.positions || layers.colors ||
-               layers.opacity;
+               layers.opacity || layers.surface || layers.emission;
     }
 
     /// \param first_texel  the map index of the first texel
@@ -109,7 +111,7 @@ class LayerBake {
     std::optional<Occlusion> occlusion_;
     std::vector<std::uint32_t> hits_;
     std::vector<double> open_, curvature_, opacity_;
-    std::vector<glm::dvec3> positions_, colors_;
+    std::vector<glm::dvec3> positions_, colors_, surfaces_, emission_;
 };
 
 }  // namespace relief::detail

@@ -12,7 +12,8 @@
 namespace relief::test {
 
 struct BakedImage {
-    std::vector<float> normals, heights, occlusion, curvature, positions, colors, opacity;
+    std::vector<float> normals, heights, occlusion, curvature, positions, colors, opacity, surface,
+        emission;
     std::vector<TexelState> states;
     BakeResult result;
     Report report;
@@ -36,6 +37,8 @@ inline void append(BakedImage& image, const BakedRows& rows) {
     add(image.positions, rows.positions);
     add(image.colors, rows.colors);
     add(image.opacity, rows.opacity);
+    add(image.surface, rows.surface);
+    add(image.emission, rows.emission);
     add(image.states, rows.states);
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -130,6 +131,87 @@ TEST(HighMaterials, OpacityIsFactorTimesTextureTimesVertexUnlessOpaque) {
     EXPECT_EQ(opacity(), std::vector<float>(4, 0.25F));
     options.materials.clear();
     EXPECT_EQ(opacity(), std::vector<float>(4, 1.0F));
+}
+
+TEST(HighMaterials, AlphaIsCutAfterTheFactorsAndTheTexture) {
+    const std::vector<Mesh> meshes = {make_quad()};
+    BakeOptions options = sized(2, 2);
+    options.map.layers.opacity = true;
+    HighMaterials& detail = options.materials.emplace_back();
+    detail.mesh = meshes.data();
+    HighMaterial& material = detail.materials.emplace_back();
+    const auto opacity = [&] { return bake(meshes, make_quad(), options).opacity.front(); };
+    material.opacity = 0.5F;
+    material.alpha_cutoff = 0.5F;
+    EXPECT_EQ(opacity(), 1.0F);
+    material.alpha_cutoff = 0.51F;
+    EXPECT_EQ(opacity(), 0.0F);
+    material.opacity.reset();
+    EXPECT_EQ(opacity(), 1.0F) << "opaque";
+}
+
+TEST(HighMaterials, SurfaceIsFactorTimesTexture) {
+    const std::vector<Mesh> meshes = {make_quad()};
+    BakeOptions options = sized(2, 2);
+    options.map.layers.surface = true;
+    const auto surface = [&] {
+        const std::vector<float> values = bake(meshes, make_quad(), options).surface;
+        return std::vector<float>(values.begin(), values.begin() + 3);
+    };
+    EXPECT_EQ(surface(), (std::vector<float>{1.0F, 1.0F, 0.0F})) << "without a material";
+    HighMaterials& detail = options.materials.emplace_back();
+    detail.mesh = meshes.data();
+    HighMaterial& material = detail.materials.emplace_back();
+    material.roughness = 0.5F;
+    material.metallic = 0.25F;
+    EXPECT_EQ(surface(), (std::vector<float>{1.0F, 0.5F, 0.25F}));
+    Image image = make_image(1, 1, 3, 32, ColorSpace::data);
+    std::ranges::copy(std::vector<float>{0.125F, 0.5F, 0.75F}, image.as<float>().begin());
+    material.surface_texture = SurfaceTexture{.image = std::make_shared<const Image>(image)};
+    EXPECT_EQ(surface(), (std::vector<float>{1.0F, 0.25F, 0.1875F}));
+    material.occlusion_texture = material.surface_texture;
+    material.occlusion_strength = 0.5F;
+    EXPECT_EQ(surface(), (std::vector<float>{0.5625F, 0.25F, 0.1875F}));
+}
+
+TEST(HighMaterials, EmissionIsFactorTimesTextureAndHasABound) {
+    const std::vector<Mesh> meshes = {make_quad()};
+    BakeOptions options = sized(2, 2);
+    options.map.layers.emission = true;
+    const auto emission = [&] {
+        const std::vector<float> values = bake(meshes, make_quad(), options).emission;
+        return std::vector<float>(values.begin(), values.begin() + 3);
+    };
+    const auto bound = [&] {
+        return Baker(meshes, make_quad(), options).bounds(options.map.layers).emission;
+    };
+    EXPECT_EQ(emission(), (std::vector<float>{0.0F, 0.0F, 0.0F})) << "without a material";
+    EXPECT_EQ(bound(), 0.0);
+    HighMaterials& detail = options.materials.emplace_back();
+    detail.mesh = meshes.data();
+    HighMaterial& material = detail.materials.emplace_back();
+    material.emission = {4.0F, 2.0F, 0.0F};
+    EXPECT_EQ(emission(), (std::vector<float>{4.0F, 2.0F, 0.0F}));
+    EXPECT_EQ(bound(), 4.0);
+    Image image = make_image(1, 1, 3, 32, ColorSpace::linear);
+    std::ranges::copy(std::vector<float>{0.25F, 0.5F, 0.125F}, image.as<float>().begin());
+    material.emission_texture = SurfaceTexture{.image = std::make_shared<const Image>(image)};
+    EXPECT_EQ(emission(), (std::vector<float>{1.0F, 1.0F, 0.0F}));
+    EXPECT_EQ(bound(), 2.0) << "the largest factor times the largest texel";
+}
+
+TEST(HighMaterials, EmissionOfFilesHasAUnit) {
+    const std::vector<float> values = {4.0F, 2.0F, 0.0F, 8.0F, 0.0F, 0.0F};
+    const std::vector<TexelState> states(2, TexelState::baked);
+    const LayerCoding coding{LayerKind::emission, 8, 4.0};
+    Report report;
+    const std::vector<std::byte> codes = encode_layer(values, states, coding, false, 0, report);
+    EXPECT_EQ(codes[0], std::byte{255});
+    EXPECT_EQ(codes[1], std::byte{188});
+    EXPECT_EQ(codes[2], std::byte{0});
+    EXPECT_EQ(codes[3], std::byte{255});
+    EXPECT_EQ(report.count("emission outside the range of its file"), 1U);
+    EXPECT_EQ(layer_metadata(coding).at("relief:range"), "4");
 }
 
 TEST(HighMaterials, MaterialsAreByTriangle) {

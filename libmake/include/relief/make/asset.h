@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +18,7 @@
 #include "relief/export.h"
 #include "relief/mesh/bake.h"
 #include "relief/mesh/execution.h"
+#include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/material.h"
 #include "relief/mesh/mesh.h"
@@ -37,9 +39,9 @@ struct AssetSource {
     std::vector<HighMaterial> materials;
     /// The material of triangles without a material.
     std::optional<HighMaterial> otherwise;
-    float roughness = 1.0F;                    ///< Of the asset's material, above 0 to 1.
-    AlphaMode alpha_mode = AlphaMode::opaque;  ///< If a material has an opacity.
-    float alpha_cutoff = 0.5F;                 ///< For AlphaMode::mask.
+    /// What all materials share: the alpha mode, whether they are double-sided, and the factors
+    /// that HighMaterial does not have (clearcoat, index of refraction, ...). The asset gets them.
+    GltfMaterial shared;
 };
 
 struct AssetOptions {
@@ -59,7 +61,9 @@ struct AssetOptions {
     bool occlusion = true;    ///< Bakes an occlusion map of a quarter of the size.
     int occlusion_rays = 32;  ///< Per texel of the occlusion map.
     int samples = 1;          ///< Per texel (BakeMapOptions::samples).
-    std::size_t levels = 0;   ///< Levels of detail; each has half the triangles of the one before.
+    /// Further layers, of 16 bits: height, curvature and position.
+    std::vector<LayerKind> layers;
+    std::size_t levels = 0;  ///< Levels of detail; each has half the triangles of the one before.
     ExecutionOptions execution;
     /// Runs a stage, for measurements and progress; absent: it is only called. Exceptions must
     /// pass.
@@ -89,6 +93,12 @@ struct AssetLevel {
     double coverage = 1.0;  ///< The same as a part of a screen of 1920 x 1080.
 };
 
+/// A further layer.
+struct AssetLayer {
+    LayerCoding coding;
+    Image image;
+};
+
 /// An asset in memory.
 struct Asset {
     std::string name;
@@ -98,16 +108,47 @@ struct Asset {
     std::optional<AtlasStats> atlas;   ///< Absent with AssetOptions::keep_texcoords.
     BakeResult bake;
     BakeAgreement agreement;
-    Image normal_map;  ///< 8 bits, green up, zero at 127.5, as in glTF.
-    std::optional<Image> occlusion_map;
-    /// sRGB, with opacity in alpha if `alpha_mode` is not opaque. Absent: the source has one color.
-    std::optional<Image> color_map;
-    glm::vec3 color{0.8F};  ///< Linear; of an asset without a color map.
-    float roughness = 1.0F;
-    AlphaMode alpha_mode = AlphaMode::opaque;
-    float alpha_cutoff = 0.5F;
+    // The maps of the material have 8 bits. A property that is the same everywhere has no map.
+    Image normal_map;                    ///< Green up, zero at 127.5, as in glTF.
+    std::optional<Image> occlusion_map;  ///< Without a `surface_map`.
+    std::optional<Image> color_map;      ///< sRGB, with opacity in alpha unless it is opaque.
+    /// Occlusion, roughness and metalness in the channels of glTF.
+    std::optional<Image> surface_map;
+    bool surface_has_occlusion = false;  ///< Otherwise the red of `surface_map` has no meaning.
+    std::optional<Image> emission_map;   ///< sRGB; the strength of the material is its unit.
+    /// The factors, which maps multiply. Its textures and `emission` are not used.
+    GltfMaterial material;
+    std::vector<AssetLayer> layers;  ///< In the order of AssetOptions::layers.
     std::vector<StageReport> reports;
 };
+
+/// A map of an asset, as it is stored.
+struct AssetMap {
+    std::string name;     ///< In file names: "normal".
+    std::string content;  ///< In reports: "normals".
+    const Image* image = nullptr;
+    std::vector<TextureSlot> slots;               ///< In the material; none for further layers.
+    std::map<std::string, std::string> metadata;  ///< The text entries of the file.
+};
+
+/// Returns the maps that an asset has: normal, occlusion, color, surface ("orm"), emission, and
+/// further layers. They refer to the asset.
+std::vector<AssetMap> maps_of(const Asset& asset);
+
+/// The name of AssetMap of a further layer: "height".
+std::string layer_name(LayerKind kind);
+
+/// The properties that need a map, because they vary over the surface of a source.
+struct VaryingProperties {
+    bool color = false;
+    bool surface = false;    ///< Roughness or metalness.
+    bool occlusion = false;  ///< The occlusion textures of the source.
+    bool emission = false;
+};
+
+/// Returns the properties that vary by materials, textures or vertex colors. A texture may still
+/// turn out to be the same everywhere.
+VaryingProperties varying_properties(const Mesh& mesh, const AssetSource& source);
 
 /// Runs the stages from the source to the maps.
 ///
@@ -117,7 +158,9 @@ struct Asset {
 ///   has no more keeps them, which is reported.
 /// - *unwrap* divides at hard edges and packs the charts into the map (unwrap.h).
 /// - *frames* computes normals, hard at the crease angle, and MikkTSpace tangents (frames.h).
-/// - *bake* casts rays onto the source (bake.h).
+/// - *bake* casts rays onto the source (bake.h). One pass gives normals, colors with opacity,
+///   roughness, metalness, emission and further layers; occlusion has a quarter of their size.
+///   Occlusion textures of the source are combined with it: the darker one counts.
 ///
 /// \return the same bytes for any number of threads
 /// \throws InvalidInput if an option is out of range, the mesh is not valid, no usable triangle is
@@ -135,7 +178,7 @@ std::vector<AssetLevel> write_asset(const std::filesystem::path& file, const Ass
                                     std::size_t levels, Report& report = IgnoredReport());
 
 /// Reads a written asset back and checks it: meshes (model.h, with the requirements of baking),
-/// tangents, which must be MikkTSpace's, and the size and kind of each map.
+/// tangents, which must be MikkTSpace's, the texels of each map, and the factors of the material.
 ///
 /// \return problems; empty if the file is what was made
 /// \throws FileError if the file cannot be read

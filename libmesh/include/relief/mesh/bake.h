@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Bakes maps for a low-poly mesh from high-poly meshes: normals, and optionally heights,
-/// occlusion, curvature, positions and colors. Part of the library relief::bake.
+/// occlusion, curvature, positions, colors, surfaces and emission. Part of the library
+/// relief::bake.
 /// Tests: tests/mesh/bake/bake_layers_test.cpp, tests/mesh/bake/high_materials_test.cpp,
 /// tests/mesh/bake/bake_test.cpp, baker_test.cpp, bake_layers_test.cpp.
 #pragma once
@@ -12,6 +13,7 @@
 #include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -24,6 +26,7 @@
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/map_convention.h"
+#include "relief/mesh/map_description.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/report.h"
@@ -32,8 +35,8 @@
 namespace RELIEF_API relief {
 
 // Options of the layers that a bake computes from the same rays: normals, heights, occlusion,
-// curvature, positions and colors. A layer that is not requested costs no time and no memory, and
-// layers do not affect each other.
+// curvature, positions, colors, surfaces and emission. A layer that is not requested costs no time
+// and no memory, and layers do not affect each other.
 
 /// Options of ambient occlusion: the fraction of rays from a point that hit nothing. Rays are
 /// cosine-distributed about the normal, like light from a uniform sky.
@@ -80,6 +83,10 @@ struct BakeLayers {
     /// HighMaterial::opacity times the alpha of the color texture and the vertex colors; 1 for
     /// opaque materials.
     bool opacity = false;
+    /// Occlusion, roughness and metalness of the materials, in the order of glTF's channels. This
+    /// occlusion is that of the materials' textures alone.
+    bool surface = false;
+    bool emission = false;               ///< Linear RGB: the material's emission times its texture.
     glm::dmat4 position_from_mesh{1.0};  ///< For `positions`.
 };
 
@@ -89,6 +96,7 @@ struct LayerBounds {
     double curvature = 0.0;      ///< Over all vertices of the high meshes.
     double curvature_p99 = 0.0;  ///< Over 99% of their area.
     double position = 0.0;       ///< Over all coordinates, transformed by `position_from_mesh`.
+    double emission = 0.0;       ///< Over all materials and the texels of their textures.
 };
 
 /// An image on a mesh. It is sampled at full resolution, bilinearly or nearest, as `filter` says; a
@@ -120,14 +128,24 @@ struct HighMaterial {
     /// Multiplied by the alpha of the texture and the vertex colors. Absent: the material is
     /// opaque, whatever these are.
     std::optional<float> opacity{};
+    /// For materials with an opacity: an opacity of at least this one becomes 1, any other 0.
+    std::optional<float> alpha_cutoff{};
+    float roughness = 1.0F;  ///< Multiplied by the green of `surface_texture`.
+    float metallic = 0.0F;   ///< Multiplied by the blue of `surface_texture`.
+    std::optional<SurfaceTexture> surface_texture{};
+    std::optional<SurfaceTexture> occlusion_texture{};  ///< Red is the occlusion; absent: 1.
+    /// The share of the occlusion texture, 0 to 1: 0 is no occlusion.
+    float occlusion_strength = 1.0F;
+    glm::vec3 emission{0.0F};  ///< Linear, at least 0; multiplied by the texture.
+    std::optional<SurfaceTexture> emission_texture{};
 };
 
 /// The materials of a high mesh.
 struct HighMaterials {
     const Mesh* mesh = nullptr;           ///< A high mesh of the bake, identified by its address.
     std::vector<HighMaterial> materials;  ///< Indexed by the mesh's material ranges.
-    /// The texture coordinates of color textures, by vertex. If empty, those of the mesh. Normal
-    /// maps always use those of the mesh, with its tangents or MikkTSpace's.
+    /// The texture coordinates of all textures but normal maps, by vertex. If empty, those of the
+    /// mesh. Normal maps always use those of the mesh, with its tangents or MikkTSpace's.
     std::vector<glm::vec2> color_texcoords;
     std::optional<HighMaterial> otherwise{};  ///< The material of triangles without a material.
 };
@@ -255,9 +273,12 @@ struct BakedRows {
     std::span<float> positions{};  ///< Three per texel.
     std::span<float> colors{};     ///< Three per texel.
     std::span<float> opacity{};
+    /// Three per texel. Roughness is 0 in texels that are neither baked nor padded.
+    std::span<float> surface{};
+    std::span<float> emission{};  ///< Three per texel.
 };
 
-enum class LayerKind { height, occlusion, curvature, position, color };
+enum class LayerKind { height, occlusion, curvature, position, color, surface, emission };
 
 /// The "relief:content" of files.
 template <>
@@ -266,24 +287,31 @@ inline constexpr auto enum_names<LayerKind> =
                                         {"ambient occlusion", LayerKind::occlusion},
                                         {"curvature", LayerKind::curvature},
                                         {"positions", LayerKind::position},
-                                        {"colors", LayerKind::color}});
+                                        {"colors", LayerKind::color},
+                                        {"surface", LayerKind::surface},
+                                        {"emission", LayerKind::emission}});
 
 /// The values of a layer.
 std::span<const float> layer_values(LayerKind kind, const BakedRows& rows);
 
 /// The encoding of a layer. Floats store values as they are, colors linearly. With 8 and 16 bits,
-/// occlusion is code / 255 or code / 65535, and colors are sRGB; signed layers are
-/// range * (code - 128) / 127 or range * (code - 32768) / 32767, so that 0 is exact.
+/// occlusion and surfaces are code / 255 or code / 65535, colors are sRGB, and emission is range
+/// times sRGB; signed layers are range * (code - 128) / 127 or range * (code - 32768) / 32767, so
+/// that 0 is exact.
 struct LayerCoding {
     LayerKind kind = LayerKind::height;
     int bits = 16;
-    double range = 1.0;  ///< Of signed layers in 8 and 16 bits.
+    double range = 1.0;  ///< Of signed layers and emission in 8 and 16 bits.
 
     [[nodiscard]] bool is_signed() const {
-        return kind != LayerKind::occlusion && kind != LayerKind::color;
+        return kind == LayerKind::height || kind == LayerKind::curvature ||
+               kind == LayerKind::position;
     }
     [[nodiscard]] std::size_t channels() const {
-        return kind == LayerKind::position || kind == LayerKind::color ? 3 : 1;
+        return kind == LayerKind::position || kind == LayerKind::color ||
+                       kind == LayerKind::surface || kind == LayerKind::emission
+                   ? 3
+                   : 1;
     }
     [[nodiscard]] ColorSpace color_space() const;
 
@@ -305,6 +333,12 @@ std::vector<std::byte> encode_layer(std::span<const float> values,
                                     bool has_alpha, std::size_t first_texel,
                                     Report& report = IgnoredReport(),
                                     std::span<const float> opacity = {});
+
+/// Returns the text entries of a layer's file: those of write_description() (map_description.h),
+/// and for signed layers in 8 and 16 bits "relief:range" and "relief:zero"; for emission
+/// "relief:range". \param alpha  the content of the alpha channel; absent: there is none
+std::map<std::string, std::string> layer_metadata(const LayerCoding& coding,
+                                                  std::optional<AlphaContent> alpha = {});
 
 struct BakeDistances {
     double offset = 0.0;        ///< Outside of the low mesh.

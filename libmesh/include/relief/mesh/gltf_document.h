@@ -479,6 +479,13 @@ class GltfDocument {
     /// \throws InvalidInput if there is no such material
     void set_alpha_mode(std::size_t material, AlphaMode mode, float cutoff);
 
+    /// Sets the factors of a material: those of glTF's model with the opacity, the emission with
+    /// its strength, and whether it is double-sided. Values are clamped to the ranges of glTF.
+    /// Factors with their defaults are left out, and so are extensions without another value.
+    /// Names, textures, `emission` and the alpha mode of `values` are ignored. \throws InvalidInput
+    /// if there is no such material, or if a factor is not finite
+    void set_factors(std::size_t material, const GltfMaterial& values);
+
     /// Returns the document as a scene.
     /// \throws InvalidInput if instance attributes have a wrong type or differ in length
     [[nodiscard]] GltfView view() const;

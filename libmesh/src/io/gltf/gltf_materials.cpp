@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -224,6 +226,60 @@ void refuse_animated(const Json& root, std::size_t material, const std::string& 
     }
 }
 
+/// Sets the factors of a material by their paths.
+class FactorWriter {
+  public:
+    FactorWriter(Json& root, std::size_t material)
+        : root_(root), json_(root["materials"][material]), material_(material) {}
+
+    /// \param path   as SceneField::gltf
+    /// \param value  a number, or an array of numbers
+    void set(const std::string& path, const Json& value, const Json& neutral) {
+        if (value == neutral) {
+            remove(path);
+            return;
+        }
+        json_[Json::json_pointer("/" + path)] = value;
+        if (path.starts_with(extensions)) declare(extension_of(path));
+    }
+
+    /// \throws InvalidInput if the value is not finite
+    [[nodiscard]] float clamped(const std::string& path, float value, const FieldRange& to) const {
+        if (!std::isfinite(value))
+            fail_gltf("material {}: its {} is {}, but must be finite", material_, path, value);
+        return std::clamp(value, to.min, to.max);
+    }
+
+  private:
+    static constexpr std::string_view extensions = "extensions/";
+
+    static std::string extension_of(const std::string& path) {
+        const std::size_t first = extensions.size();
+        return path.substr(first, path.find('/', first) - first);
+    }
+
+    void declare(const std::string& extension) {
+        Json& used = root_["extensionsUsed"];
+        if (std::find(used.begin(), used.end(), extension) == used.end()) used.push_back(extension);
+    }
+
+    void remove(const std::string& path) {
+        if (find_path(json_, path) == nullptr) return;
+        const std::size_t end = path.rfind('/');
+        Json& holder =
+            end == std::string::npos ? json_ : json_[Json::json_pointer("/" + path.substr(0, end))];
+        holder.erase(end == std::string::npos ? path : path.substr(end + 1));
+        if (!path.starts_with(extensions) || !holder.empty()) return;
+        const std::string extension = extension_of(path);
+        erase_extension(json_, extension.c_str());
+        remove_unused_extension(root_, extension);
+    }
+
+    Json& root_;
+    Json& json_;
+    std::size_t material_;
+};
+
 }  // namespace
 
 std::vector<std::size_t> GltfDocument::materials_with_textures_at(GltfPrimitiveId id,
@@ -352,6 +408,49 @@ void GltfDocument::set_alpha_mode(std::size_t material, AlphaMode mode, float cu
     if (mode == AlphaMode::opaque) return;
     json["alphaMode"] = mode == AlphaMode::mask ? "MASK" : "BLEND";
     if (mode == AlphaMode::mask && cutoff != 0.5F) json["alphaCutoff"] = cutoff;
+}
+
+void GltfDocument::set_factors(std::size_t material, const GltfMaterial& values) {
+    Json& root = contents_->data.root;
+    const std::size_t count = array_in(root, "materials").size();
+    if (material >= count)
+        fail_gltf("material {} does not exist, there are only {}", material, count);
+    FactorWriter writer(root, material);
+    constexpr FieldRange share{0, 1};
+    const std::string base_color = field_of(&MetallicRoughness::base_color).gltf;
+    const auto color_json = [&](const std::string& path, const glm::vec3& color,
+                                const FieldRange& range) -> Json {
+        return {writer.clamped(path, color.r, range), writer.clamped(path, color.g, range),
+                writer.clamped(path, color.b, range)};
+    };
+    for_each_field<MetallicRoughness>([&](const auto& field) {
+        const auto& value = (*values.metallic_roughness).*field.member;
+        using Value = std::decay_t<decltype(value)>;
+        const std::string path = field.gltf;
+        if constexpr (std::is_same_v<Value, float>) {
+            writer.set(path, writer.clamped(path, value, field.gltf_range), field.default_value());
+        } else if constexpr (std::is_same_v<Value, std::optional<float>>) {
+            Json json;
+            if (value) json = writer.clamped(path, *value, field.gltf_range);
+            writer.set(path, json, nullptr);
+        } else if constexpr (std::is_same_v<Value, glm::vec3>) {
+            Json json = color_json(path, value, field.gltf_range);
+            Json neutral = color_json(path, field.default_value(), field.gltf_range);
+            if (path == base_color) {
+                json.push_back(writer.clamped(path, values.opacity, share));
+                neutral.push_back(1.0F);
+            }
+            writer.set(path, json, neutral);
+        }
+    });
+    const std::string emission = "emissiveFactor";
+    writer.set(emission, color_json(emission, values.emission_factor, share),
+               Json::array({0.0F, 0.0F, 0.0F}));
+    const std::string strength = "extensions/KHR_materials_emissive_strength/emissiveStrength";
+    writer.set(strength, writer.clamped(strength, values.emission_strength, non_negative_range),
+               1.0F);
+    const auto sides = field_of(&Material::double_sided);
+    writer.set(sides.gltf, values.double_sided, sides.default_value());
 }
 
 }  // namespace relief

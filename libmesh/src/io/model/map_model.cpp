@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -28,6 +29,17 @@ MapModelPart part_of(const GltfDocument& document, GltfPrimitiveId id, Report& r
     return {document.describe(id), std::move(mesh), {}, {}, set};
 }
 
+/// Sets the emission of a material of MTL. A texture needs a factor to have an effect, but the
+/// default of Ke is black.
+void set_emission(GltfMaterial& converted, const MtlMaterial& material) {
+    converted.emission = glm::max(material.emission, 0.0F);
+    if (material.emission_map && converted.emission == glm::vec3(0.0F))
+        converted.emission = glm::vec3(1.0F);
+    const glm::vec3& emission = converted.emission;
+    converted.emission_strength = std::max({emission.r, emission.g, emission.b, 1.0F});
+    converted.emission_factor = emission / converted.emission_strength;
+}
+
 /// Converts materials by the rules of GltfDocument::from_mesh().
 MapAppearance appearance_of(const std::vector<MtlMaterial>& materials, Report& report) {
     MapAppearance appearance;
@@ -48,7 +60,12 @@ MapAppearance appearance_of(const std::vector<MtlMaterial>& materials, Report& r
         converted.name = material.name;
         // Some programs write the opacity where MTL expects transparency, so 0 means opaque.
         const float opacity = material.opacity > 0.0F ? std::min(material.opacity, 1.0F) : 1.0F;
-        converted.metallic_roughness->base_color = glm::clamp(material.diffuse, 0.0F, 1.0F);
+        MetallicRoughness& surface = *converted.metallic_roughness;
+        surface.base_color = glm::clamp(material.diffuse, 0.0F, 1.0F);
+        surface.metallic = 0.0F;
+        surface.roughness = std::min(
+            std::sqrt(std::sqrt(2.0F / (std::max(material.shininess, 0.0F) + 2.0F))), 1.0F);
+        set_emission(converted, material);
         converted.opacity = opacity;
         const bool has_alpha_texture =
             material.opacity_map && material.opacity_map == material.diffuse_map;
@@ -60,6 +77,7 @@ MapAppearance appearance_of(const std::vector<MtlMaterial>& materials, Report& r
                        "is not read (store the opacity in the alpha of map_Kd)");
         }
         add_texture(converted, TextureSlot::base_color, material, material.diffuse_map);
+        add_texture(converted, TextureSlot::emission, material, material.emission_map);
         add_texture(converted, TextureSlot::normal, material, material.normal_map);
         appearance.materials.push_back(std::move(converted));
     }
