@@ -63,6 +63,20 @@ TEST(RepairedHardMeshes, AreManifoldAndAreNotChangedAgain) {
     }
 }
 
+TEST(RepairedHardMeshes, HaveFrontsThatAreManifoldIfSidesStayTogether) {
+    const RepairOptions together{.two_sided = TwoSided::together};
+    for (const NamedMesh& named : metamorphic_meshes()) {
+        const Mesh once = repaired(named.mesh, together).mesh;
+        EXPECT_TRUE(
+            manifold_faults(repaired(once, {.two_sided = TwoSided::single}).mesh).is_manifold())
+            << named.name;
+        const Mesh twice = repaired(once, together).mesh;
+        const MeshVariant unchanged(once);
+        EXPECT_EQ(repaired_values(once, unchanged), repaired_values(twice, unchanged))
+            << named.name;
+    }
+}
+
 class RepairChanges : public testing::TestWithParam<MeshChange> {};
 
 TEST_P(RepairChanges, LeaveTheResultAlone) {
@@ -72,9 +86,12 @@ TEST_P(RepairChanges, LeaveTheResultAlone) {
         MeshVariant variant(named.mesh);
         GetParam().apply(variant, dice);
         const MeshVariant original(named.mesh);
-        EXPECT_EQ(repaired_values(repaired(named.mesh).mesh, original),
-                  repaired_values(repaired(variant.mesh).mesh, variant))
-            << named.name;
+        for (const TwoSided two_sided : {TwoSided::keep, TwoSided::together}) {
+            const RepairOptions options{.two_sided = two_sided};
+            EXPECT_EQ(repaired_values(repaired(named.mesh, options).mesh, original),
+                      repaired_values(repaired(variant.mesh, options).mesh, variant))
+                << named.name << ", two sides: " << enum_name(two_sided);
+        }
     }
 }
 

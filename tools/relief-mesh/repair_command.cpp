@@ -65,6 +65,9 @@ Json repair_json(const RepairCommand& command) {
 ExitCode repair_model(const CLI::App& app, const RepairCommand& command) {
     if (!command.options.merge_vertices && is_given(app, "--weld"))
         throw UsageError("--weld and --no-weld contradict each other", "give one of them");
+    if (command.options.two_sided == TwoSided::together && !command.options.orient)
+        throw UsageError("--two-sided together needs triangles that are oriented",
+                         "leave out --no-orient");
     const ModelChange change = [&](std::span<const TriangleInput> meshes, std::span<Report> reports,
                                    Report&) {
         std::vector<FramedMesh> results;
@@ -117,8 +120,9 @@ void add_repair_options(CLI::App& app, RepairCommand& command) {
         [&options] { options.remove_duplicates = false; })
         .group(triangles);
     add_choice(app, "--two-sided", options.two_sided, enum_choices<TwoSided>(),
-               "Two triangles with the same corners and opposite winding: both stay (keep), one "
-               "stays (single), or both are removed, like walls inside of a solid (remove). "
+               "Two triangles with the same corners and opposite winding: both stay, as two sheets "
+               "(keep), or at the same positions, so that they are decimated as one (together); "
+               "one stays (single); or both are removed, like walls inside of a solid (remove). "
                "Default: keep.")
         .group(triangles);
     add_number(app, "--drop-below", "SHARE", command.drop_below, {0.0, 1.0, ""},

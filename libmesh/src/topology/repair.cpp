@@ -40,6 +40,8 @@ void check_repair(const Mesh& mesh, const RepairOptions& options, const Deformat
     if (!(options.weld_tolerance >= 0.0 && std::isfinite(options.weld_tolerance)))
         throw InvalidInput(fmt::format(
             "the weld tolerance is {}, but must be finite and at least 0", options.weld_tolerance));
+    if (options.two_sided == TwoSided::together && !options.orient)
+        throw InvalidInput("the sides of a wall stay together only if triangles are oriented");
     if (!(options.drop_parts >= 0.0 && std::isfinite(options.drop_parts)))
         throw InvalidInput(
             fmt::format("the size of parts to drop is {}, but must be finite and at least 0",
@@ -179,14 +181,24 @@ struct RepairedTriangle {
     std::array<RepairedVertex, 3> corners;
 };
 
+/// Returns the corner of a face at a position.
+Corner corner_at(const RepairSurface& surface, std::uint32_t face, std::uint32_t position) {
+    Corner corner = 3 * face;
+    while (surface.position_at(corner) != position)
+        ++corner;
+    return corner;
+}
+
 /// Returns the remaining triangles in the order of the input.
 std::vector<RepairedTriangle> remaining_triangles(const Mesh& mesh, const RepairSurface& surface,
                                                   std::span<const std::uint32_t> merged,
                                                   std::span<const std::uint32_t> fans,
                                                   Report& report) {
     std::vector<std::uint32_t> face_of(mesh.triangles.size(), no_position);
-    for (std::uint32_t face = 0; face < surface.faces.size(); ++face)
+    for (std::uint32_t face = 0; face < surface.faces.size(); ++face) {
         face_of[surface.faces[face].triangle] = face;
+        if (surface.faces[face].has_back()) face_of[surface.faces[face].back] = face;
+    }
     std::vector<bool> is_set_aside(mesh.triangles.size(), false);
     for (const std::uint32_t t : surface.set_aside)
         is_set_aside[t] = true;
@@ -207,14 +219,16 @@ std::vector<RepairedTriangle> remaining_triangles(const Mesh& mesh, const Repair
             continue;
         }
         const RepairFace& face = surface.faces[face_of[t]];
-        const bool is_flipped = surface.is_flipped[face_of[t]] != 0;
+        const bool is_flipped = surface.is_reversed(face_of[t]);
         const glm::dvec3 a = surface.point(face.positions.x);
         const glm::dvec3 normal =
             glm::cross(surface.point(face.positions.y) - a, surface.point(face.positions.z) - a) *
             (is_flipped ? -1.0 : 1.0);
         for (std::uint32_t k = 0; k < 3; ++k) {
             const std::uint32_t vertex = vertices[static_cast<glm::length_t>(k)];
-            const Corner corner = 3 * face_of[t] + (k + 3 - face.first_corner) % 3;
+            Corner corner = 3 * face_of[t] + (k + 3 - face.first_corner) % 3;
+            if (t == face.back)
+                corner = corner_at(surface, face_of[t], surface.position_of[vertex]);
             const bool is_reversed = is_flipped && !mesh.normals.empty() &&
                                      glm::dot(glm::dvec3(mesh.normals[vertex]), normal) < 0.0;
             if (is_reversed)

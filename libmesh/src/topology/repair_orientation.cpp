@@ -22,7 +22,7 @@ constexpr double infinite_length = std::numeric_limits<double>::infinity();
 struct RepairPart {
     std::size_t first = 0;  ///< In PartOrder::faces.
     std::size_t count = 0;
-    double area = 0.0;
+    double area = 0.0;  ///< Of the faces without a back.
     double flipped_area = 0.0;
     double volume = 0.0;  ///< Six times the signed volume, with the winding of its faces now.
     bool is_closed = true;
@@ -93,8 +93,8 @@ void measure(const RepairSurface& surface, const PartOrder& order, RepairPart& p
         const glm::dvec3 c = surface.point(p.z);
         const double area = glm::length(glm::cross(b - a, c - a));
         const double volume = glm::dot(a - origin, glm::cross(b - origin, c - origin));
-        part.area += area;
-        if (surface.is_flipped[face] != 0) part.flipped_area += area;
+        if (!surface.faces[face].has_back()) part.area += area;
+        if (surface.is_reversed(face)) part.flipped_area += area;
         part.volume += surface.is_flipped[face] != 0 ? -volume : volume;
         part.low = glm::min(part.low, glm::min(a, glm::min(b, c)));
         part.high = glm::max(part.high, glm::max(a, glm::max(b, c)));
@@ -178,7 +178,7 @@ void orient_outwards(RepairSurface& surface, PartOrder& order, Report& report) {
         report.add("too many nested parts", "mesh", 0,
                    "cavities are not looked for any more: closed parts are oriented outwards");
     for (std::size_t face = 0; face < surface.faces.size(); ++face) {
-        if (surface.is_flipped[face] != 0)
+        if (surface.is_reversed(face))
             report.add("triangle with the wrong winding", "triangle", surface.faces[face].triangle,
                        "is reversed");
     }
@@ -197,8 +197,10 @@ void drop_small_parts(RepairSurface& surface, const PartOrder& order, double len
     for (std::uint32_t face = 0; face < surface.faces.size(); ++face) {
         const double size = order.parts[surface.part_of[face]].diagonal();
         if (size < length && size < largest) {
-            report.add("triangle of a small part", "triangle", surface.faces[face].triangle,
-                       "is removed");
+            const RepairFace& removed = surface.faces[face];
+            report.add("triangle of a small part", "triangle", removed.triangle, "is removed");
+            if (removed.has_back())
+                report.add("triangle of a small part", "triangle", removed.back, "is removed");
             continue;
         }
         number[face] = static_cast<std::uint32_t>(kept.size());

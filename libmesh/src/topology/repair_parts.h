@@ -25,6 +25,10 @@ struct RepairFace {
     glm::uvec3 positions;  ///< The smallest one is first.
     std::uint32_t triangle;
     std::uint32_t first_corner;  ///< That of the triangle with the first position, 0 to 2.
+    /// The triangle of the other side that follows this one; no_position: none.
+    std::uint32_t back = no_position;
+
+    [[nodiscard]] bool has_back() const { return back != no_position; }
 };
 
 /// The triangles at an edge that are more than two.
@@ -50,6 +54,10 @@ struct RepairSurface {
     }
     [[nodiscard]] glm::dvec3 point(std::uint32_t position) const {
         return glm::dvec3(positions[position]);
+    }
+    /// Returns whether the triangle of a face is reversed. One with a back has both windings.
+    [[nodiscard]] bool is_reversed(std::size_t face) const {
+        return is_flipped[face] != 0 && !faces[face].has_back();
     }
     /// Returns whether two faces run along their common edge in the same direction as they are now.
     [[nodiscard]] bool is_twisted(Corner a, Corner b) const {

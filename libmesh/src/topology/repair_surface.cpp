@@ -128,6 +128,7 @@ void remove_duplicates(const RepairOptions& options, std::vector<RepairFace>& fa
     kept.reserve(faces.size());
     for (std::size_t begin = 0; begin < faces.size();) {
         const FaceKey key(faces[begin]);
+        const std::size_t front = kept.size();
         std::size_t end = begin + 1;
         bool is_two_sided = false;
         while (end < faces.size() && faces[end].positions.x == faces[begin].positions.x &&
@@ -147,6 +148,8 @@ void remove_duplicates(const RepairOptions& options, std::vector<RepairFace>& fa
             else if (is_reversed && options.two_sided == TwoSided::single)
                 report.add("two-sided triangle", "triangle", faces[i].triangle,
                            "is removed; the other side stays");
+            else if (is_reversed && is_first && options.two_sided == TwoSided::together)
+                kept[front].back = faces[i].triangle;
             else
                 kept.push_back(faces[i]);
         }
@@ -166,8 +169,7 @@ class EdgePairs {
     void join(std::span<const Corner> corners) {
         if (corners.size() < 2) return;
         if (corners.size() == 2) {
-            if (joins_twisted_ ||
-                surface_.position_at(corners[0]) != surface_.position_at(corners[1]))
+            if (joins_twisted_ || !is_twisted(corners[0], corners[1]))
                 connect(corners[0], corners[1]);
             return;
         }
@@ -190,6 +192,12 @@ class EdgePairs {
         glm::dvec3 away;  ///< From the edge, in the plane of the face.
     };
 
+    /// Returns whether two faces run along the edge in the same direction. A face with a back runs
+    /// in both.
+    [[nodiscard]] bool is_twisted(Corner a, Corner b) const {
+        return surface_.position_at(a) == surface_.position_at(b) &&
+               !surface_.faces[a / 3].has_back() && !surface_.faces[b / 3].has_back();
+    }
     void connect(Corner a, Corner b) {
         surface_.opposite[a] = b;
         surface_.opposite[b] = a;
@@ -211,9 +219,7 @@ class EdgePairs {
         std::size_t best_j = 0;
         for (std::size_t i = 0; i < open_.size(); ++i) {
             for (std::size_t j = i + 1; j < open_.size(); ++j) {
-                const bool same_direction =
-                    surface_.position_at(open_[i].corner) == surface_.position_at(open_[j].corner);
-                if (same_direction != twisted) continue;
+                if (is_twisted(open_[i].corner, open_[j].corner) != twisted) continue;
                 const double cosine = glm::dot(open_[i].away, open_[j].away);
                 if (cosine >= best) continue;
                 best = cosine;

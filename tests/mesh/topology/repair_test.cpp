@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "relief/mesh/diagnose.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 #include "support/hard_meshes.h"
@@ -141,6 +142,47 @@ TEST(Repair, TreatsTwoSidedTrianglesAsRequested) {
     EXPECT_EQ(manifold_faults(single).boundary_edges, 16U);
     EXPECT_EQ(report.count("two-sided triangle"), 32U);
     EXPECT_TRUE(repaired(both, {.two_sided = TwoSided::remove}).mesh.triangles.empty());
+}
+
+/// The number of triangles of which the other side has the same positions.
+std::size_t two_sided_triangles(const Mesh& mesh) {
+    return diagnose(mesh).count(MeshCondition::triangle_two_sided);
+}
+
+TEST(Repair, KeepsTheSidesOfWallsTogether) {
+    // Three doubled walls that meet in one line, and a cube of which one side is doubled.
+    Mesh walls;
+    walls.positions = {{0, 0, 0},  {0, 0, 1},  {1, 0, 0},   {1, 0, 1},
+                       {-1, 1, 0}, {-1, 1, 1}, {-1, -1, 0}, {-1, -1, 1}};
+    for (const std::uint32_t end : {2U, 4U, 6U}) {
+        walls.triangles.emplace_back(0U, 1U, end);
+        walls.triangles.emplace_back(end, 1U, end + 1);
+    }
+    Mesh back = walls;
+    reverse(back);
+    Mesh mesh = joined_meshes(joined_meshes(walls, back), cube_at({5, 0, 0}));
+    const glm::uvec3 side = mesh.triangles.back();
+    mesh.triangles.emplace_back(side.y, side.x, side.z);
+    ASSERT_EQ(two_sided_triangles(mesh), 14U);
+    EXPECT_LT(two_sided_triangles(repaired(mesh).mesh), 14U);
+    Report report;
+    const Mesh once = repaired(mesh, {.two_sided = TwoSided::together}, report).mesh;
+    EXPECT_EQ(once.triangles.size(), mesh.triangles.size());
+    EXPECT_EQ(two_sided_triangles(once), 14U);
+    EXPECT_EQ(report.count("triangle with the wrong winding"), 0U);
+    EXPECT_EQ(report.count("non-manifold edge"), 1U) << "only that of the three walls";
+    // The fronts are a manifold, and a second repair changes nothing.
+    EXPECT_TRUE(
+        manifold_faults(repaired(once, {.two_sided = TwoSided::single}).mesh).is_manifold());
+    Report again;
+    EXPECT_EQ(repaired(once, {.two_sided = TwoSided::together}, again).mesh.positions,
+              once.positions);
+    EXPECT_EQ(again.count("non-manifold edge"), 0U);
+    EXPECT_EQ(again.count("triangles that meet others only at a position"), 0U);
+    // Sides in any winding are fronts: no edge inside of a wall is cut.
+    const Mesh kept = repaired(once).mesh;
+    EXPECT_TRUE(manifold_faults(kept).is_manifold());
+    EXPECT_THROW(repaired(mesh, {.two_sided = TwoSided::together, .orient = false}), InvalidInput);
 }
 
 TEST(Repair, OrientsClosedPartsOutwards) {

@@ -14,14 +14,19 @@
 
 namespace RELIEF_API relief {
 
-/// The outcome for two triangles with the same corners and opposite winding: both stay (a sheet
-/// with two sides), one stays, or both are removed (a wall inside of a solid).
-enum class TwoSided { keep, single, remove };
+/// The outcome for two triangles with the same corners and opposite winding, the sides of a doubled
+/// wall.
+enum class TwoSided {
+    keep,      ///< Both stay, as triangles of two sheets.
+    together,  ///< Both stay at the same positions, so that they are decimated as one (topology.h).
+    single,    ///< One stays.
+    remove     ///< Both are removed, as for a wall inside of a solid.
+};
 
 template <>
 inline constexpr auto enum_names<TwoSided> = std::array{
-    EnumName<TwoSided>{"keep", TwoSided::keep}, EnumName<TwoSided>{"single", TwoSided::single},
-    EnumName<TwoSided>{"remove", TwoSided::remove}};
+    EnumName<TwoSided>{"keep", TwoSided::keep}, EnumName<TwoSided>{"together", TwoSided::together},
+    EnumName<TwoSided>{"single", TwoSided::single}, EnumName<TwoSided>{"remove", TwoSided::remove}};
 
 /// The steps of a repair, in their order.
 struct RepairOptions {
@@ -52,8 +57,9 @@ struct RepairOptions {
 ///         `source_vertex` holds the input's vertices. With all steps, no edge has more than two
 ///         triangles, two triangles at an edge have the same winding, and the triangles at a
 ///         position are one fan, apart from triangles that are kept although they collapsed or are
-///         not finite. Nothing may remain
-/// \throws InvalidInput if the mesh is not valid, or if a length is negative or not finite
+///         not finite, and from the backs of sheets that stay together. Nothing may remain
+/// \throws InvalidInput if the mesh is not valid, if a length is negative or not finite, or if
+///         sheets stay `together` without `orient`
 ///
 /// Three or more triangles at an edge: pairs in opposite directions are joined, the flattest first;
 /// pairs in the same direction follow if `orient` is set. The others are cut, and so are edges at
@@ -61,7 +67,8 @@ struct RepairOptions {
 /// at a position stays; fan k moves by k * 2^-20 of the size of the mesh (rounded up to a power of
 /// two), or by k * 16 times the spacing of floats if that is more: into its own triangles, or along
 /// its normal if the fan is closed. So separated vertices have different positions, in every file
-/// format.
+/// format. Sides that stay together are one triangle for all these steps: the back follows its
+/// front, and no side is reversed.
 ///
 /// Closed parts are oriented outwards by their signed volume, unless they are inside of an odd
 /// number of other closed parts: then they may be the walls of a cavity, and keep the winding of
