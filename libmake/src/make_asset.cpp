@@ -11,6 +11,7 @@
 #include "bake_stage.h"
 #include "relief/make/asset.h"
 #include "relief/mesh/frames.h"
+#include "remesh_judgment.h"
 
 namespace relief::make {
 namespace {
@@ -35,6 +36,13 @@ void check(const AssetOptions& options) {
         if (std::ranges::count(options.layers, kind) > 1)
             throw InvalidInput(fmt::format("the layer {} is requested twice", enum_name(kind)));
     }
+    if (options.remesh == Remeshing::always && options.keep_texcoords)
+        throw InvalidInput("a mesh that is remeshed cannot keep its texture coordinates");
+}
+
+/// Returns whether triangles are replaced only if that is better.
+bool judges_remeshing(const AssetOptions& options) {
+    return options.remesh == Remeshing::automatic && !options.keep_texcoords;
 }
 
 /// Runs stages and collects their reports.
@@ -48,14 +56,21 @@ class Maker {
   private:
     void run_stage(const std::string& name, void (Maker::*work)(Report&));
     void repair(Report& report);
+    void remesh(Report& report);
+    void judge(Report& report);
+    [[nodiscard]] RemeshOptions grid() const;
     void decimate(Report& report);
+    void separate_sides(Report& report);
     void unwrap_mesh(Report& report);
+    void reduce();
     void compute_frames(Report& report);
     void bake(Report& report);
 
     const AssetSource& source_;
     const AssetOptions& options_;
     Mesh high_;
+    std::optional<Mesh> closed_;  ///< The closed surface that replaces the triangles of `high_`.
+    detail::RemeshEvidence evidence_;
     Asset asset_;
 };
 
@@ -69,10 +84,18 @@ bool is_usable(const Mesh& mesh, const glm::uvec3& triangle) {
     return std::isfinite(length) && length > 0.0;
 }
 
+/// Returns options with which the sides of doubled walls are decimated as one.
+RepairOptions with_sides_together(RepairOptions options) {
+    if (options.two_sided == TwoSided::keep && options.orient)
+        options.two_sided = TwoSided::together;
+    return options;
+}
+
 void Maker::repair(Report& report) {
     validate(source_.mesh);
-    Mesh mesh =
-        options_.repair ? repaired(source_.mesh, *options_.repair, report).mesh : source_.mesh;
+    Mesh mesh = options_.repair
+                    ? repaired(source_.mesh, with_sides_together(*options_.repair), report).mesh
+                    : source_.mesh;
     std::vector<std::uint32_t> usable;
     usable.reserve(mesh.triangles.size());
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -93,12 +116,46 @@ void Maker::repair(Report& report) {
         high_ = with_frames(std::move(high_), frames, report).mesh;
     }
     asset_.source_triangles = high_.triangles.size();
+    if (judges_remeshing(options_)) {
+        evidence_.crowded_edges =
+            detail::crowded_edge_share(high_, options_.repair ? &report : nullptr);
+    }
+}
+
+RemeshOptions Maker::grid() const {
+    return {options_.resolution, options_.shell, options_.execution};
+}
+
+/// Replaces the triangles to decimate.
+void Maker::remesh(Report& report) {
+    RemeshDecision& decision = asset_.remesh.emplace();
+    closed_ = detail::closed_surface(high_, grid(), decision, report);
+    decision.is_remeshed = true;
+    decision.reason = "it was requested";
+}
+
+/// Replaces the triangles that were decimated if a criterion requires it and the distance permits
+/// it.
+void Maker::judge(Report& report) {
+    RemeshDecision& decision = asset_.remesh.emplace();
+    decision.criteria = detail::remesh_criteria(high_, evidence_);
+    closed_ = detail::better_surface(high_, grid(), decision, report);
+}
+
+/// Moves the sides of doubled walls apart, so that rays meet the right one and each side has charts
+/// of its own.
+void Maker::separate_sides(Report& report) {
+    Report known;  // The repair has counted the others.
+    high_ = repaired(high_, *options_.repair, known).mesh;
+    asset_.mesh = repaired(asset_.mesh, *options_.repair, known).mesh;
+    report.add("surface with doubled walls", "mesh", 0,
+               "has sides that are a millionth of its size apart");
 }
 
 void Maker::decimate(Report& report) {
     Mesh surface;
-    surface.positions = high_.positions;
-    surface.triangles = high_.triangles;
+    surface.positions = closed_ ? closed_->positions : high_.positions;
+    surface.triangles = closed_ ? closed_->triangles : high_.triangles;
     if (options_.keep_texcoords) {
         surface.texcoords = high_.texcoords;
         if (surface.texcoords.empty())
@@ -115,6 +172,11 @@ void Maker::decimate(Report& report) {
     limits.frames.tangents = TangentMethod::none;
     asset_.mesh = decimated(surface, limits, report).mesh;
     if (asset_.mesh.triangles.empty()) throw InvalidInput("no triangle is left after decimation");
+    if (options_.repair && !closed_ && report.count("double-sided triangle") > 0)
+        separate_sides(report);
+    const double ratio =
+        static_cast<double>(asset_.mesh.triangles.size()) / static_cast<double>(options_.triangles);
+    evidence_.excess = std::max(0.0, ratio - 1.0);
 }
 
 void Maker::unwrap_mesh(Report& report) {
@@ -125,6 +187,7 @@ void Maker::unwrap_mesh(Report& report) {
     unwrapping.execution = options_.execution;
     const Unwrapped unwrapped = unwrap(asset_.mesh, unwrapping, report);
     asset_.atlas = unwrapped.stats;
+    evidence_.small_charts = detail::small_chart_area(asset_.mesh, unwrapped);
     asset_.mesh = with_texcoords(asset_.mesh, unwrapped).mesh;
 }
 
@@ -142,14 +205,27 @@ void Maker::bake(Report& report) {
 }
 
 void Maker::run_stage(const std::string& name, void (Maker::*work)(Report&)) {
-    StageReport& stage = asset_.reports.emplace_back(StageReport{name, {}});
+    std::vector<StageReport>& reports = asset_.reports;
+    auto stage = std::ranges::find(reports, name, &StageReport::stage);
+    if (stage == reports.end()) stage = reports.insert(stage, StageReport{name, {}});
+    stage->report = {};  // Of a surface that was replaced.
     if (options_.run_stage) {
-        options_.run_stage(name, [&] { (this->*work)(stage.report); });
+        options_.run_stage(name, [&] { (this->*work)(stage->report); });
     } else {
-        (this->*work)(stage.report);
+        (this->*work)(stage->report);
     }
-    if (options_.take_mesh && name != "bake")
-        options_.take_mesh(name, name == "repair" ? high_ : asset_.mesh);
+    if (!options_.take_mesh || name == "bake") return;
+    if (name == "remesh") {
+        if (closed_) options_.take_mesh(name, *closed_);
+        return;
+    }
+    options_.take_mesh(name, name == "repair" ? high_ : asset_.mesh);
+}
+
+/// Decimates and unwraps.
+void Maker::reduce() {
+    run_stage("decimate", &Maker::decimate);
+    if (!options_.keep_texcoords) run_stage("unwrap", &Maker::unwrap_mesh);
 }
 
 Asset Maker::run() {
@@ -158,8 +234,12 @@ Asset Maker::run() {
     asset_.name = source_.name;
     asset_.origin = source_.origin;
     run_stage("repair", &Maker::repair);
-    run_stage("decimate", &Maker::decimate);
-    if (!options_.keep_texcoords) run_stage("unwrap", &Maker::unwrap_mesh);
+    if (options_.remesh == Remeshing::always) run_stage("remesh", &Maker::remesh);
+    reduce();
+    if (judges_remeshing(options_)) {
+        run_stage("remesh", &Maker::judge);
+        if (closed_) reduce();
+    }
     run_stage("frames", &Maker::compute_frames);
     run_stage("bake", &Maker::bake);
     return std::move(asset_);
@@ -168,8 +248,12 @@ Asset Maker::run() {
 }  // namespace
 
 std::vector<std::string> stages_of(const AssetOptions& options) {
-    std::vector<std::string> stages = {"repair", "decimate", "unwrap", "frames", "bake"};
-    if (options.keep_texcoords) std::erase(stages, "unwrap");
+    std::vector<std::string> stages = {"repair"};
+    if (options.remesh == Remeshing::always) stages.emplace_back("remesh");
+    stages.emplace_back("decimate");
+    if (!options.keep_texcoords) stages.emplace_back("unwrap");
+    if (judges_remeshing(options)) stages.emplace_back("remesh");
+    stages.insert(stages.end(), {"frames", "bake"});
     return stages;
 }
 

@@ -30,17 +30,17 @@ TEST(KeptStages, HaveTheMeshAfterEachStageAndTheMaps) {
     };
     const Mesh asset = test::read_document(workplace / "out/vase.glb").mesh({0, 0});
     EXPECT_GT(read("01-repair.glb").triangles.size(), 200U);
-    const Mesh decimated = read("02-decimate.glb");
+    const Mesh decimated = read("03-decimate.glb");
     EXPECT_EQ(decimated.triangles.size(), asset.triangles.size());
     EXPECT_TRUE(decimated.texcoords.empty());
-    const Mesh unwrapped = read("03-unwrap.glb");
+    const Mesh unwrapped = read("04-unwrap.glb");
     EXPECT_FALSE(unwrapped.texcoords.empty());
     EXPECT_TRUE(unwrapped.tangents.empty());
-    const Mesh framed = read("04-frames.glb");
+    const Mesh framed = read("05-frames.glb");
     EXPECT_EQ(framed.positions, asset.positions);
     EXPECT_EQ(framed.tangents, asset.tangents);
-    EXPECT_EQ(read_image_info(workplace / "out/new/s/05-bake-normal.png").width, 32);
-    EXPECT_EQ(read_image_info(workplace / "out/new/s/05-bake-occlusion.png").width, 8);
+    EXPECT_EQ(read_image_info(workplace / "out/new/s/06-bake-normal.png").width, 32);
+    EXPECT_EQ(read_image_info(workplace / "out/new/s/06-bake-occlusion.png").width, 8);
 }
 
 TEST(KeptStages, AreThoseOfOneAssetAndNoInputs) {

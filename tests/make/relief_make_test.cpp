@@ -49,8 +49,8 @@ TEST(MakeCommand, MakesAnAssetThatPassesTheChecks) {
         EXPECT_GT(stage["peak_bytes"].get<double>(), 1e6);
         EXPECT_GE(stage["processor_milliseconds"].get<double>(), 0.0);
     }
-    EXPECT_EQ(stages, (std::vector<std::string>{"read", "repair", "decimate", "unwrap", "frames",
-                                                "bake", "write", "verify"}));
+    EXPECT_EQ(stages, (std::vector<std::string>{"read", "repair", "decimate", "unwrap", "remesh",
+                                                "frames", "bake", "write", "verify"}));
 }
 
 TEST(MakeCommand, WritesTheSameBytesForAnyNumberOfThreads) {

@@ -82,6 +82,9 @@ void check_outputs(const MakeCommand& command, const JobList& list) {
 Json options_json(const MakeCommand& command) {
     const make::AssetOptions& asset = command.request.asset;
     Json json = {{"repair", asset.repair.has_value()},
+                 {"remesh", enum_name(asset.remesh)},
+                 {"resolution", asset.resolution},
+                 {"shell", asset.shell},
                  {"triangles", asset.triangles},
                  {"size", {asset.size.x, asset.size.y}},
                  {"padding", asset.padding},
@@ -127,6 +130,13 @@ std::string repeating_line(const MakeCommand& command, const Job& job) {
         asset.crease_angle ? fmt::format("{:.6g}", *asset.crease_angle * 180.0 / std::numbers::pi)
                            : "none");
     if (!asset.repair) line += " --no-repair";
+    if (asset.remesh != make::Remeshing::never) {
+        line +=
+            fmt::format(" --remesh {} --resolution {}", enum_name(asset.remesh), asset.resolution);
+        if (asset.shell) line += " --shell";
+    } else {
+        line += " --remesh never";
+    }
     if (asset.keep_texcoords) line += " --keep-uvs";
     for (const std::filesystem::path& file : command.request.more_sources)
         line += " --with " + quoted(file);
@@ -220,6 +230,22 @@ ExitCode make_all(const CLI::App& app, const MakeCommand& command, const JobList
     return code;
 }
 
+/// \throws UsageError if options of remeshing have no effect or contradict others
+void check_remeshing(const CLI::App& app, const MakeCommand& command) {
+    const make::AssetOptions& asset = command.request.asset;
+    if (asset.keep_texcoords && asset.remesh == make::Remeshing::always) {
+        throw UsageError("--remesh always and --keep-uvs contradict each other",
+                         "a closed surface needs new texture coordinates");
+    }
+    if (asset.remesh != make::Remeshing::never && !asset.keep_texcoords) return;
+    for (const char* option : {"--resolution", "--shell"}) {
+        if (is_given(app, option)) {
+            throw UsageError(fmt::format("{}: has no effect, because nothing is remeshed", option),
+                             "leave it out");
+        }
+    }
+}
+
 ExitCode make(const CLI::App& app, const MakeCommand& command) {
     const JobList list = make_jobs_of(command);
     if (command.request.stages_folder && !list.is_single()) {
@@ -232,6 +258,7 @@ ExitCode make(const CLI::App& app, const MakeCommand& command) {
                                      command.request.more_sources.front().string()),
                          "make a single asset without an output folder");
     }
+    check_remeshing(app, command);
     set_thread_limit(command.general.threads);
     if (command.explain) return explain(command, list);
     check_outputs(command, list);
@@ -311,6 +338,23 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
         "Otherwise equal vertices are merged, repeated triangles removed, parts oriented "
         "outwards and non-manifold edges cut (relief-mesh repair).",
         [&asset] { asset.repair.reset(); })
+        .group(shape);
+    add_choice(app, "--remesh", asset.remesh, enum_choices<make::Remeshing>(),
+               "Replace the triangles by a closed surface before they are decimated "
+               "(relief-mesh remesh): always; never; or if one of four printed figures exceeds its "
+               "limit and the surface is near enough (auto). Maps still show the model. Default: "
+               "auto.")
+        .group(shape);
+    add_value(app, "--resolution", "N",
+              "The number of cells of --remesh along the longest side, 8 to 1024. Default: 256.",
+              [&asset](const std::string& subject, const std::string& text) {
+                  asset.resolution = parse_integer(subject, text, 8, 1024);
+              })
+        .group(shape);
+    add_switch(app, "--shell", asset.shell,
+               "With --remesh, everything within 0.75 cells of a triangle is solid, so that open "
+               "surfaces become shells 1.5 cells thick. Default: only what triangles enclose is "
+               "solid, and sheets vanish.")
         .group(shape);
     const std::string maps = "Maps";
     add_value(app, "--size", "N|WxH", "The size of the maps in texels. Default: 2048.",
@@ -399,6 +443,8 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
     add_general_options(app, command.general);
     set_examples(app,
                  {"relief make data/urn-high.ply out/urn-asset.glb --triangles 2000 --size 512",
+                  "relief make data/vase.obj out/vase-asset.glb --remesh always --resolution 64 "
+                  "--triangles 500 --size 256",
                   "relief make data/urn-high.ply -o out/urn-asset.glb --size 512 --lods 2 "
                   "--for unreal --report out/urn-asset.html",
                   "relief make data/*.obj -o out/assets/ --triangles 500 --size 256"});

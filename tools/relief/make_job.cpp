@@ -19,6 +19,7 @@
 #include "make_engine.h"
 #include "make_loss.h"
 #include "make_pictures.h"
+#include "make_remesh.h"
 #include "make_stages.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/image_file.h"
@@ -391,6 +392,10 @@ Summary summary_of(const MakeRequest& request, const Job& job, const MadeAsset& 
         fmt::format("{}, {}", counted(asset.mesh.triangles.size(), "triangle"),
                     counted(asset.mesh.positions.size(), "vertex", "vertices")),
         {{"triangles", asset.mesh.triangles.size()}, {"vertices", asset.mesh.positions.size()}});
+    if (asset.remesh) {
+        summary.add("remesh", remesh_lines(*asset.remesh),
+                    {{"remesh", remesh_json(*asset.remesh)}});
+    }
     if (asset.atlas) {
         summary.add("atlas",
                     atlas_text(*asset.atlas, {asset.normal_map.width, asset.normal_map.height}),

@@ -13,6 +13,7 @@
 #include "file_replacement.h"
 #include "make_loss.h"
 #include "make_pictures.h"
+#include "make_remesh.h"
 #include "page_text.h"
 
 namespace relief::tools {
@@ -27,6 +28,7 @@ class PageWriter {
 
     [[nodiscard]] std::string figures() const;
     [[nodiscard]] std::string comparison() const;
+    [[nodiscard]] std::string remeshing() const;
     [[nodiscard]] std::string findings() const;
     [[nodiscard]] std::string stages() const;
     [[nodiscard]] std::string loss() const;
@@ -83,6 +85,16 @@ std::string PageWriter::comparison() const {
     } catch (const Error& error) {
         return fmt::format("<p>The models could not be drawn: {}</p>", html_escaped(error.what()));
     }
+}
+
+std::string PageWriter::remeshing() const {
+    if (!made_.asset.remesh) return "";
+    const std::vector<std::string> lines = remesh_lines(*made_.asset.remesh);
+    std::string list;
+    for (std::size_t i = 1; i < lines.size(); ++i)
+        list += "<li>" + html_escaped(lines[i]) + "</li>\n";
+    return fmt::format("<p>Remeshing: {}.</p>\n{}", html_escaped(lines.front()),
+                       list.empty() ? "" : "<ul>\n" + list + "</ul>\n");
 }
 
 std::string PageWriter::findings() const {
@@ -189,7 +201,7 @@ void write_make_page(const std::filesystem::path& file, const MakeRequest& reque
                                   {"figures", writer.figures()},
                                   {"comparison", writer.comparison()},
                                   {"command", html_escaped(command)},
-                                  {"findings", writer.findings()},
+                                  {"findings", writer.remeshing() + writer.findings()},
                                   {"stages", writer.stages()},
                                   {"loss", writer.loss()},
                                   {"levels", writer.levels()},

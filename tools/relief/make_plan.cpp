@@ -21,6 +21,7 @@ struct EstimatedCosts {
     double decimate = 2.0;       ///< The same.
     double unwrap = 35.0;        ///< Per million triangles of the asset.
     double unwrap_size = 0.005;  ///< Per million texels.
+    double remesh = 2.0;         ///< At 256 cells; grows with their square.
     double prepare = 1.3;        ///< Of the bake, per million triangles of the source.
     double bake = 0.55;          ///< Per million rays.
     double occlusion = 0.43;     ///< Per million rays of occlusion.
@@ -33,6 +34,23 @@ constexpr double covered = 0.65;
 
 double texels_of(const glm::ivec2& size) {
     return static_cast<double>(size.x) * static_cast<double>(size.y);
+}
+
+/// The stage "remesh". The time without a replacement is counted.
+PlannedStage remesh_plan(const make::AssetOptions& options, double dense) {
+    const EstimatedCosts costs;
+    const std::string grid = fmt::format("a closed surface of {} cells{}", options.resolution,
+                                         options.shell ? ", with shells" : "");
+    const double share = options.resolution / 256.0;
+    const double replacing = costs.remesh * share * share + costs.prepare * dense;
+    if (options.remesh == make::Remeshing::always)
+        return {"remesh", "replace the triangles by " + grid, replacing};
+    return {"remesh",
+            fmt::format(
+                "measure whether the mesh needs {}; if so, and if it is at most {:g} cells away, "
+                "about {} more, and decimate and unwrap again",
+                grid, make::max_remesh_distance, duration(1e3 * replacing)),
+            0.0};
 }
 
 }  // namespace
@@ -74,17 +92,20 @@ std::vector<PlannedStage> plan_of(const MakeRequest& request, const make::AssetS
                      options.repair ? "merge vertices, orient parts, cut non-manifold edges"
                                     : "remove unusable triangles",
                      source.mesh.normals.empty() ? "; compute normals, " + edges : ""),
-         costs.repair * dense},
-        {"decimate",
-         fmt::format("{} to {}", counted(source.mesh.triangles.size(), "triangle"),
-                     std::min(options.triangles, source.mesh.triangles.size())),
-         costs.decimate * dense}};
+         costs.repair * dense}};
+    if (options.remesh == make::Remeshing::always) plan.push_back(remesh_plan(options, dense));
+    plan.push_back({"decimate",
+                    fmt::format("{} to {}", counted(source.mesh.triangles.size(), "triangle"),
+                                std::min(options.triangles, source.mesh.triangles.size())),
+                    costs.decimate * dense});
     if (!options.keep_texcoords) {
         plan.push_back({"unwrap",
                         fmt::format("charts in {} x {} texels, padding {}", options.size.x,
                                     options.size.y, options.padding),
                         costs.unwrap * result + costs.unwrap_size * texels});
     }
+    if (options.remesh == make::Remeshing::automatic && !options.keep_texcoords)
+        plan.push_back(remesh_plan(options, dense));
     plan.push_back({"frames", fmt::format("normals, {}; MikkTSpace tangents", edges), 0.0});
     plan.push_back(
         {"bake",

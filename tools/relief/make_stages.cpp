@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "relief/mesh/gltf_document.h"
@@ -14,6 +15,9 @@ namespace relief::tools {
 namespace {
 
 constexpr std::string_view bake_stage = "bake";
+/// Their order in the numbers of files.
+constexpr auto stage_order = std::to_array<std::string_view>(
+    {"repair", "remesh", "decimate", "unwrap", "frames", bake_stage});
 
 }  // namespace
 
@@ -25,7 +29,7 @@ StageFiles::StageFiles(const std::filesystem::path& folder, const make::AssetOpt
 }
 
 std::filesystem::path StageFiles::file_of(std::string_view stage, std::string_view ending) const {
-    const auto number = std::ranges::find(stages_, stage) - stages_.begin() + 1;
+    const auto number = std::ranges::find(stage_order, stage) - stage_order.begin() + 1;
     return folder_ / fmt::format("{:02}-{}{}", number, stage, ending);
 }
 

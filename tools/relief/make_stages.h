@@ -15,8 +15,9 @@
 
 namespace relief::tools {
 
-/// The files in a folder: a mesh for each stage of make::stages_of(), "02-decimate.glb", and the
-/// maps with the names of make::maps_of(), "05-bake-normal.png".
+/// The files in a folder: a mesh for each stage of make::stages_of(), "03-decimate.glb", and the
+/// maps with the names of make::maps_of(), "06-bake-normal.png". A stage has the same number in all
+/// jobs. "02-remesh.glb" exists only if the mesh was remeshed.
 class StageFiles {
   public:
     StageFiles(const std::filesystem::path& folder, const make::AssetOptions& options);

@@ -90,7 +90,8 @@ Sample encode_value(const LayerCoding& coding, float value, bool& is_outside) {
         }
         if constexpr (std::is_same_v<Sample, std::uint8_t>) {
             static const SrgbCodes codes;
-            if (coding.color_space() == ColorSpace::srgb) return codes.code(static_cast<float>(place));
+            if (coding.color_space() == ColorSpace::srgb)
+                return codes.code(static_cast<float>(place));
         }
         if (coding.color_space() == ColorSpace::srgb)
             place = static_cast<double>(srgb_from_linear(static_cast<float>(place)));

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/make/remeshing.h"
 #include "relief/mesh/bake.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/gltf_document.h"
@@ -48,6 +49,11 @@ struct AssetOptions {
     /// The steps of the repair; absent: only triangles without area are removed, and those with a
     /// position that is not finite.
     std::optional<RepairOptions> repair = RepairOptions{};
+    /// Whether the triangles are replaced by a closed surface around them before decimation. With
+    /// `keep_texcoords`, `automatic` means `never`.
+    Remeshing remesh = Remeshing::automatic;
+    int resolution = 256;          ///< Of the grid (RemeshOptions::resolution).
+    bool shell = false;            ///< Sheets become shells (RemeshOptions::shell).
     std::size_t triangles = 5000;  ///< The target number of triangles, at least 1.
     glm::ivec2 size{2048};         ///< Of the maps in texels, 16 to 16384 each.
     /// The distance of charts in texels; the maps are padded by as many.
@@ -73,8 +79,10 @@ struct AssetOptions {
     std::function<void(std::string_view stage, const Mesh& mesh)> take_mesh;
 };
 
-/// The names of the stages in their order: "repair", "decimate", "unwrap", "frames", "bake".
-/// \param options  with keep_texcoords there is no "unwrap"
+/// The names of the stages in their order: "repair", "remesh", "decimate", "unwrap", "frames",
+/// "bake". With Remeshing::automatic, "remesh" follows "unwrap", because it judges the result. If
+/// triangles are replaced then, "decimate" and "unwrap" run again.
+/// \param options  with keep_texcoords there is no "unwrap"; "remesh" is there if it can occur
 std::vector<std::string> stages_of(const AssetOptions& options);
 
 /// The findings of a stage.
@@ -104,8 +112,9 @@ struct Asset {
     std::string name;
     Mesh mesh;  ///< With normals, texture coordinates and tangents (MikkTSpace); one material.
     glm::dvec3 origin{0.0};
-    std::size_t source_triangles = 0;  ///< After repair.
-    std::optional<AtlasStats> atlas;   ///< Absent with AssetOptions::keep_texcoords.
+    std::size_t source_triangles = 0;      ///< After repair.
+    std::optional<RemeshDecision> remesh;  ///< If there is a stage "remesh".
+    std::optional<AtlasStats> atlas;       ///< Absent with AssetOptions::keep_texcoords.
     BakeResult bake;
     BakeAgreement agreement;
     // The maps of the material have 8 bits. A property that is the same everywhere has no map.
@@ -153,7 +162,10 @@ VaryingProperties varying_properties(const Mesh& mesh, const AssetSource& source
 /// Runs the stages from the source to the maps.
 ///
 /// - *repair* merges equal vertices, orients parts outwards and separates non-manifold edges
-///   (repair.h), and removes triangles without area.
+///   (repair.h), and removes triangles without area. The sides of doubled walls stay together
+///   until they are decimated.
+/// - *remesh* replaces the triangles by a closed surface (remeshing.h), which is decimated; maps
+///   still show the source.
 /// - *decimate* reduces the surface to the target number of triangles (topology.h). A source that
 ///   has no more keeps them, which is reported.
 /// - *unwrap* divides at hard edges and packs the charts into the map (unwrap.h).
@@ -164,8 +176,8 @@ VaryingProperties varying_properties(const Mesh& mesh, const AssetSource& source
 ///
 /// \return the same bytes for any number of threads
 /// \throws InvalidInput if an option is out of range, the mesh is not valid, no usable triangle is
-///         left, texture coordinates are to be kept but absent, or no ray hits the source;
-///         Cancelled
+///         left, texture coordinates are to be kept but absent or the mesh is remeshed, nothing is
+///         enclosed that can be remeshed, or no ray hits the source; Cancelled
 Asset make_asset(const AssetSource& source, const AssetOptions& options);
 
 /// Writes an asset with its maps inside as .glb or .gltf, with levels of detail (MSFT_lod).
