@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <functional>
+#include <memory>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -23,23 +25,58 @@ using namespace relief::shade::detail;
 namespace {
 
 constexpr float middle_gray = 0.18F;  ///< Linear.
-/// Every fourth view measures the noise floor, and the difference on black.
-constexpr std::size_t floor_stride = 4;
 
 void raise(WorstView& worst, std::size_t view, double value) {
     if (value > worst.value) worst = {view, value};
 }
 
-/// The values of all views.
-struct Collected {
-    std::vector<float> values;
+/// The values of some views.
+struct Differences {
+    std::array<std::vector<float>, fidelity_light_count> flip;
+    AngleValues angles;
+    SilhouetteSums silhouettes;
+    WorstView worst_degrees;
 
-    /// \return the mean of the added values
-    double add(const std::vector<float>& added) {
-        values.insert(values.end(), added.begin(), added.end());
-        return mean_of(added);
+    /// \param one  the values of a view
+    void add(const Differences& one, std::size_t view) {
+        for (std::size_t i = 0; i < fidelity_light_count; ++i)
+            flip[i].insert(flip[i].end(), one.flip[i].begin(), one.flip[i].end());
+        const std::vector<float>& degrees = one.angles.degrees;
+        angles.degrees.insert(angles.degrees.end(), degrees.begin(), degrees.end());
+        angles.undefined += one.angles.undefined;
+        silhouettes.area += one.silhouettes.area;
+        silhouettes.length += one.silhouettes.length;
+        raise(worst_degrees, view, mean_of(degrees));
     }
 };
+
+NormalLoss normal_loss(const Differences& differences) {
+    const std::vector<float>& degrees = differences.angles.degrees;
+    NormalLoss normals;
+    normals.mean = mean_of(degrees);
+    normals.pixels = degrees.size();
+    normals.undefined = differences.angles.undefined;
+    normals.worst = differences.worst_degrees;
+    double squares = 0.0;
+    for (const float value : degrees) {
+        const auto angle = static_cast<double>(value);
+        normals.max = std::max(normals.max, angle);
+        squares += angle * angle;
+    }
+    if (normals.pixels > 0) normals.rms = std::sqrt(squares / static_cast<double>(normals.pixels));
+    normals.p95 = percentile(degrees, 95);
+    normals.p99 = percentile(degrees, 99);
+    return normals;
+}
+
+SampledFidelity sampled_fidelity(const Differences& differences) {
+    SampledFidelity sampled;
+    for (std::size_t i = 0; i < fidelity_light_count; ++i)
+        sampled.flip[i] = mean_of(differences.flip[i]);
+    sampled.normals = normal_loss(differences);
+    sampled.silhouette_pixels = differences.silhouettes.width();
+    return sampled;
+}
 
 void check(const FidelityOptions& options) {
     constexpr int min_size = 16, max_size = 4096, max_samples = 16;
@@ -58,6 +95,21 @@ void check(const FidelityOptions& options) {
         throw InvalidInput(fmt::format("{} views are requested, but there must be 1 to {}",
                                        options.views, fidelity_view_count));
     }
+    for (const glm::vec3& view : options.more_views) {
+        const float squared = glm::dot(view, view);
+        if (!(squared > 0.0F && std::isfinite(squared)))
+            throw InvalidInput("the direction of a view must be finite and not zero");
+    }
+}
+
+/// Returns the directions to the cameras of all views.
+std::vector<glm::vec3> views_of(const FidelityOptions& options) {
+    std::vector<glm::vec3> views;
+    for (std::size_t i = 0; i < options.views; ++i)
+        views.push_back(fidelity_view(i));
+    for (const glm::vec3& view : options.more_views)
+        views.push_back(glm::normalize(view));
+    return views;
 }
 
 }  // namespace
@@ -79,19 +131,30 @@ double Fidelity::max_picture_mean() const {
     return most;
 }
 
+std::vector<std::size_t> worst_views_first(const Fidelity& loss) {
+    std::vector<std::size_t> order(loss.views.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto largest = [&](std::size_t view) {
+        return *std::ranges::max_element(loss.views[view].flip);
+    };
+    std::ranges::stable_sort(order, std::greater(), largest);
+    return order;
+}
+
 struct FidelityMeter::Implementation {
     Implementation(const Context& gl, const Scene& scene, const FidelityOptions& requested,
                    Report& report);
 
-    /// The noise floors.
-    struct Floors {
-        std::array<double, fidelity_light_count> flip{};
-        double degrees = 0.0;
-        double silhouette_pixels = 0.0;
-    };
-
+    [[nodiscard]] bool is_sampled(std::size_t view) const {
+        return view < options.views && view % fidelity_sample_stride == 0;
+    }
+    /// Loads a result; null if it has no triangles.
+    std::unique_ptr<DrawnScene> load(const Scene& result, Report& report);
     void measure_floor(const Scene& scene);
-    /// Adds the difference of a view with one light. \return FLIP by compared pixel
+    /// \param losses  by light; get the pictures of the worst view. May be null
+    Differences compare(const ViewPictures& result, std::size_t view, const ComparedPart& compared,
+                        std::array<PictureLoss, fidelity_light_count>* losses) const;
+    /// Compares a view with one light. \return FLIP by compared pixel
     std::vector<float> compare_light(const ViewPictures& result, std::size_t view,
                                      FidelityLight light, const ComparedPart& compared,
                                      PictureLoss* loss) const;
@@ -104,14 +167,16 @@ struct FidelityMeter::Implementation {
     RenderCache cache;
     FidelitySphere sphere;
     FidelityMaterials materials = FidelityMaterials::as_authored;
+    std::vector<glm::vec3> views;  ///< The directions to the cameras.
     std::vector<ViewPictures> source;
-    Floors floors;
+    SampledFidelity floor;
 };
 
 FidelityMeter::Implementation::Implementation(const Context& gl, const Scene& scene,
                                               const FidelityOptions& requested, Report& report)
     : options(requested), per_side(1), context(gl), cache(gl) {
     check(options);
+    views = views_of(options);
     while (per_side * per_side < options.samples)
         ++per_side;
     sphere = fidelity_sphere(scene);
@@ -125,35 +190,45 @@ FidelityMeter::Implementation::Implementation(const Context& gl, const Scene& sc
     const Scene unit = normalized_scene(scene, sphere, materials);
     {
         DrawnScene drawn(cache, context, unit, options.size, per_side, report);
-        for (std::size_t view = 0; view < options.views; ++view)
-            source.push_back(drawn.draw(view));
+        for (const glm::vec3& from : views)
+            source.push_back(drawn.draw(from));
     }
     measure_floor(unit);
     cache.drop_unused();
 }
 
+std::unique_ptr<DrawnScene> FidelityMeter::Implementation::load(const Scene& result,
+                                                                Report& report) {
+    if (!has_triangles(result)) return nullptr;
+    return std::make_unique<DrawnScene>(cache, context, normalized_scene(result, sphere, materials),
+                                        options.size, per_side, report);
+}
+
 void FidelityMeter::Implementation::measure_floor(const Scene& scene) {
     DrawnScene drawn(cache, context, scene, options.size, per_side + 1, IgnoredReport());
-    std::array<Collected, fidelity_light_count> flip;
-    Collected degrees;
-    SilhouetteSums silhouettes;
-    for (std::size_t view = 0; view < options.views; view += floor_stride) {
-        const ViewPictures other = drawn.draw(view);
+    Differences differences;
+    for (std::size_t view = 0; view < views.size(); ++view) {
+        if (!is_sampled(view)) continue;
+        const ViewPictures other = drawn.draw(views[view]);
         const ComparedPart compared =
             compared_part(source[view].normals, other.normals, options.size);
-        for (std::size_t i = 0; i < fidelity_light_count; ++i)
-            flip[i].add(
-                compare_light(other, view, static_cast<FidelityLight>(i), compared, nullptr));
-        degrees.add(angles_between(source[view].normals, other.normals).degrees);
-        const SilhouetteSums sums =
-            silhouette_sums(source[view].normals, other.normals, options.size);
-        silhouettes.area += sums.area;
-        silhouettes.length += sums.length;
+        differences.add(compare(other, view, compared, nullptr), view);
     }
-    for (std::size_t i = 0; i < fidelity_light_count; ++i)
-        floors.flip[i] = mean_of(flip[i].values);
-    floors.degrees = mean_of(degrees.values);
-    floors.silhouette_pixels = silhouettes.width();
+    floor = sampled_fidelity(differences);
+}
+
+Differences FidelityMeter::Implementation::compare(
+    const ViewPictures& result, std::size_t view, const ComparedPart& compared,
+    std::array<PictureLoss, fidelity_light_count>* losses) const {
+    Differences differences;
+    for (std::size_t i = 0; i < fidelity_light_count; ++i) {
+        differences.flip[i] = compare_light(result, view, static_cast<FidelityLight>(i), compared,
+                                            losses == nullptr ? nullptr : &(*losses)[i]);
+    }
+    const NormalPicture& before = source[view].normals;
+    differences.angles = angles_between(before, result.normals);
+    differences.silhouettes = silhouette_sums(before, result.normals, options.size);
+    return differences;
 }
 
 std::vector<float> FidelityMeter::Implementation::compare_light(const ViewPictures& result,
@@ -242,68 +317,70 @@ void add_findings(const NormalPicture& source, const NormalPicture& result, int 
 Fidelity FidelityMeter::measure(const Scene& result, Report& report) {
     Implementation& self = *implementation_;
     const FidelityOptions& options = self.options;
-    std::optional<DrawnScene> drawn;
-    if (has_triangles(result)) {
-        drawn.emplace(self.cache, self.context,
-                      normalized_scene(result, self.sphere, self.materials), options.size,
-                      self.per_side, report);
-    }
     Fidelity fidelity;
-    std::array<Collected, fidelity_light_count> flip;
-    Collected on_black, degrees;
-    SilhouetteSums silhouettes;
-    for (std::size_t view = 0; view < options.views; ++view) {
-        const ViewPictures pictures = drawn ? drawn->draw(view) : empty_view(options.size);
-        const NormalPicture& before = self.source[view].normals;
-        const ComparedPart compared = compared_part(before, pictures.normals, options.size);
-        ViewLoss& loss = fidelity.views.emplace_back();
-        for (std::size_t i = 0; i < fidelity_light_count; ++i) {
-            loss.flip[i] = flip[i].add(self.compare_light(
-                pictures, view, static_cast<FidelityLight>(i), compared, &fidelity.pictures[i]));
+    Differences all, sampled;
+    std::vector<float> on_black;
+    {
+        const std::unique_ptr<DrawnScene> drawn = self.load(result, report);
+        for (std::size_t view = 0; view < self.views.size(); ++view) {
+            const ViewPictures pictures =
+                drawn ? drawn->draw(self.views[view]) : empty_view(options.size);
+            const NormalPicture& before = self.source[view].normals;
+            const ComparedPart compared = compared_part(before, pictures.normals, options.size);
+            const Differences one = self.compare(pictures, view, compared, &fidelity.pictures);
+            all.add(one, view);
+            ViewLoss& loss = fidelity.views.emplace_back();
+            loss.from = self.views[view];
+            for (std::size_t i = 0; i < fidelity_light_count; ++i)
+                loss.flip[i] = mean_of(one.flip[i]);
+            loss.degrees = mean_of(one.angles.degrees);
+            loss.silhouette_pixels = one.silhouettes.width();
+            raise(fidelity.silhouettes.worst, view, loss.silhouette_pixels);
+            std::optional<double> view_on_black;
+            if (self.is_sampled(view)) {
+                sampled.add(one, view);
+                const std::vector<float> values = self.flip_on_black(pictures, view, compared);
+                view_on_black = mean_of(values);
+                on_black.insert(on_black.end(), values.begin(), values.end());
+            }
+            add_findings(before, pictures.normals, options.size, loss, view_on_black,
+                         one.angles.degrees.size() + one.angles.undefined, view, report);
         }
-        std::optional<double> view_on_black;
-        if (view % floor_stride == 0) {
-            view_on_black = on_black.add(self.flip_on_black(pictures, view, compared));
-        }
-        const AngleValues angles = angles_between(before, pictures.normals);
-        fidelity.normals.undefined += angles.undefined;
-        loss.degrees = degrees.add(angles.degrees);
-        raise(fidelity.normals.worst, view, loss.degrees);
-        const SilhouetteSums sums = silhouette_sums(before, pictures.normals, options.size);
-        silhouettes.area += sums.area;
-        silhouettes.length += sums.length;
-        loss.silhouette_pixels = sums.width();
-        raise(fidelity.silhouettes.worst, view, loss.silhouette_pixels);
-        add_findings(before, pictures.normals, options.size, loss, view_on_black,
-                     angles.degrees.size() + angles.undefined, view, report);
     }
+    self.cache.drop_unused();
     for (std::size_t i = 0; i < fidelity_light_count; ++i) {
         PictureLoss& loss = fidelity.pictures[i];
-        loss.mean = mean_of(flip[i].values);
-        loss.p95 = percentile(std::move(flip[i].values), 95);
-        loss.floor = self.floors.flip[i];
+        loss.mean = mean_of(all.flip[i]);
+        loss.p95 = percentile(all.flip[i], 95);
+        loss.floor = self.floor.flip[i];
     }
-    fidelity.studio_mean_on_black = mean_of(on_black.values);
-    NormalLoss& normals = fidelity.normals;
-    normals.mean = mean_of(degrees.values);
-    normals.pixels = degrees.values.size();
-    double squares = 0.0;
-    for (const float value : degrees.values) {
-        const auto angle = static_cast<double>(value);
-        normals.max = std::max(normals.max, angle);
-        squares += angle * angle;
-    }
-    if (normals.pixels > 0) normals.rms = std::sqrt(squares / static_cast<double>(normals.pixels));
-    normals.p95 = percentile(degrees.values, 95);
-    normals.p99 = percentile(std::move(degrees.values), 99);
-    normals.floor = self.floors.degrees;
-    fidelity.silhouettes.width = silhouettes.width();
-    fidelity.silhouettes.floor = self.floors.silhouette_pixels;
+    fidelity.normals = normal_loss(all);
+    fidelity.normals.floor = self.floor.normals.mean;
+    fidelity.silhouettes.width = all.silhouettes.width();
+    fidelity.silhouettes.floor = self.floor.silhouette_pixels;
+    fidelity.sampled = sampled_fidelity(sampled);
+    fidelity.studio_mean_on_black = mean_of(on_black);
     fidelity.diameter = 2.0 * self.sphere.radius;
     fidelity.pixels_across = fidelity_sphere_share * static_cast<double>(options.size);
-    drawn.reset();
-    self.cache.drop_unused();
     return fidelity;
+}
+
+SampledFidelity FidelityMeter::measure_sampled(const Scene& result, Report& report) {
+    Implementation& self = *implementation_;
+    Differences differences;
+    {
+        const std::unique_ptr<DrawnScene> drawn = self.load(result, report);
+        for (std::size_t view = 0; view < self.views.size(); ++view) {
+            if (!self.is_sampled(view)) continue;
+            const ViewPictures pictures =
+                drawn ? drawn->draw(self.views[view]) : empty_view(self.options.size);
+            const ComparedPart compared =
+                compared_part(self.source[view].normals, pictures.normals, self.options.size);
+            differences.add(self.compare(pictures, view, compared, nullptr), view);
+        }
+    }
+    self.cache.drop_unused();
+    return sampled_fidelity(differences);
 }
 
 double NormalLoss::error(ErrorKind kind) const {

@@ -78,15 +78,17 @@ Material matte(const Material& material, FidelityMaterials materials) {
     return result;
 }
 
-glm::mat3 axes_of(std::size_t view) {
-    const glm::vec3 back = fidelity_view(view);
-    const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0, 1, 0), back));
+/// \param back  the direction to the camera
+glm::mat3 axes_of(const glm::vec3& back) {
+    const glm::vec3 across = glm::cross(glm::vec3(0, 1, 0), back);
+    const bool is_vertical = glm::dot(across, across) < 1e-12F;
+    const glm::vec3 right = is_vertical ? glm::vec3(1, 0, 0) : glm::normalize(across);
     return {right, glm::cross(back, right), back};
 }
 
 /// \param reach  the radius of the scene around the origin
-Camera camera_of(std::size_t view, double reach) {
-    const glm::mat3 axes = axes_of(view);
+Camera camera_of(const glm::vec3& from, double reach) {
+    const glm::mat3 axes = axes_of(from);
     const auto distance = static_cast<float>(1.5 * reach);
     Camera camera;
     camera.world_from_view = glm::mat4(axes);
@@ -97,8 +99,8 @@ Camera camera_of(std::size_t view, double reach) {
     return camera;
 }
 
-DirectionalLight grazing_light(std::size_t view) {
-    const glm::mat3 axes = axes_of(view);
+DirectionalLight grazing_light(const glm::vec3& from) {
+    const glm::mat3 axes = axes_of(from);
     const float side = sin_grazing * std::sqrt(0.5F);
     const glm::vec3 to_light = side * (axes[1] - axes[0]) + cos_grazing * axes[2];
     return {-to_light, glm::vec3(1.0F)};
@@ -111,7 +113,7 @@ Scene lit(Scene scene, FidelityLight light) {
             scene.environment->intensity = studio_intensity;
             break;
         case FidelityLight::grazing:
-            scene.directional_lights = {grazing_light(0)};
+            scene.directional_lights = {grazing_light(fidelity_view(0))};
             break;
         case FidelityLight::base_color:
             for (Material& material : scene.materials)
@@ -276,27 +278,27 @@ DrawnScene::DrawnScene(RenderCache& cache, const Context& context, const Scene& 
                      IgnoredReport());
 }
 
-ColorPicture DrawnScene::draw_light(FidelityLight light, std::size_t view) {
+ColorPicture DrawnScene::draw_light(FidelityLight light, const glm::vec3& from) {
     Renderer& renderer = *lights_[static_cast<std::size_t>(light)];
     if (light == FidelityLight::grazing) {
-        grazing_.directional_lights = {grazing_light(view)};
+        grazing_.directional_lights = {grazing_light(from)};
         renderer.move(grazing_);
     }
-    return averaged_colors(renderer.draw(camera_of(view, reach_)).image, per_side_);
+    return averaged_colors(renderer.draw(camera_of(from, reach_)).image, per_side_);
 }
 
-NormalPicture DrawnScene::draw_normals(std::size_t view) {
-    return averaged_normals(normals_->draw(camera_of(view, reach_)).image, per_side_);
+NormalPicture DrawnScene::draw_normals(const glm::vec3& from) {
+    return averaged_normals(normals_->draw(camera_of(from, reach_)).image, per_side_);
 }
 
-ViewPictures DrawnScene::draw(std::size_t view) {
+ViewPictures DrawnScene::draw(const glm::vec3& from) {
     ViewPictures pictures;
-    pictures.normals = draw_normals(view);
+    pictures.normals = draw_normals(from);
     for (std::size_t i = 0; i < fidelity_light_count; ++i) {
         const auto light = static_cast<FidelityLight>(i);
         pictures.colors[i] = light == FidelityLight::base_color && color_
                                  ? one_color_picture(*color_, pictures.normals)
-                                 : draw_light(light, view);
+                                 : draw_light(light, from);
     }
     return pictures;
 }

@@ -68,11 +68,12 @@ class DrawnScene {
     DrawnScene(RenderCache& cache, const Context& context, const Scene& scene, int size,
                int per_side, Report& report);
 
-    ViewPictures draw(std::size_t view);
+    /// \param from  the direction to the camera, a unit vector
+    ViewPictures draw(const glm::vec3& from);
 
   private:
-    ColorPicture draw_light(FidelityLight light, std::size_t view);
-    NormalPicture draw_normals(std::size_t view);
+    ColorPicture draw_light(FidelityLight light, const glm::vec3& from);
+    NormalPicture draw_normals(const glm::vec3& from);
 
     double reach_;
     int per_side_;

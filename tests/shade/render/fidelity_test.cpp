@@ -24,7 +24,7 @@ namespace {
 
 class FidelityTest : public test::DrawTest {};
 
-constexpr FidelityOptions small_pictures{.size = 64, .samples = 4, .views = 6};
+const FidelityOptions small_pictures{.size = 64, .samples = 4, .views = 6};
 constexpr int map_size = 64;
 constexpr auto studio = static_cast<std::size_t>(FidelityLight::studio);
 constexpr auto base_color = static_cast<std::size_t>(FidelityLight::base_color);
@@ -191,7 +191,8 @@ TEST_F(FidelityTest, OfEqualScenesIsPerfect) {
     EXPECT_EQ(fidelity.silhouettes.width, 0.0);
     EXPECT_EQ(fidelity.studio_mean_on_black, 0.0);
     EXPECT_EQ(fidelity.max_picture_mean(), 0.0);
-    EXPECT_EQ(fidelity.views.size(), small_pictures.views);
+    ASSERT_EQ(fidelity.views.size(), small_pictures.views);
+    EXPECT_EQ(fidelity.views[3].from, fidelity_view(3));
     for (const Finding& finding : report.findings())
         EXPECT_NE(finding.element, "view") << finding.kind;
     EXPECT_NEAR(fidelity.diameter, 2.0, 1e-6);
@@ -225,7 +226,7 @@ Scene plain_sphere(Mesh mesh = test::sphere(16, 8)) {
     return test::scene_of(std::move(mesh), Material());
 }
 
-constexpr FidelityOptions tiny_pictures{.size = 32, .samples = 4, .views = 2};
+const FidelityOptions tiny_pictures{.size = 32, .samples = 4, .views = 2};
 
 TEST_F(FidelityTest, DependsNeitherOnTheOrderOfTrianglesNorOnThreads) {
     const Scene coarse = plain_sphere(test::sphere(8, 6));
@@ -255,6 +256,41 @@ TEST_F(FidelityTest, DoesNotDependOnTheUnit) {
     }
     expect_equal(measured[1], measured[0]);
     expect_equal(measured[2], measured[0]);
+}
+
+TEST_F(FidelityTest, MeasuresMoreViewsOnRequest) {
+    // A hole at the upper pole, and views along the axis that points up.
+    Mesh open = test::sphere(16, 16);
+    std::erase_if(open.triangles, [&](const glm::uvec3& triangle) {
+        return open.positions[triangle.x].y > 0.9F;
+    });
+    FidelityOptions pictures{.size = 32, .samples = 4, .views = 1};
+    pictures.more_views = {{0.0F, 3.0F, 0.0F}, {0.0F, -3.0F, 0.0F}};
+    FidelityMeter meter(context(), plain_sphere(test::sphere(16, 16)), pictures);
+    const Fidelity fidelity = meter.measure(plain_sphere(open));
+    ASSERT_EQ(fidelity.views.size(), 3U);
+    EXPECT_EQ(fidelity.views[1].from, glm::vec3(0.0F, 1.0F, 0.0F));
+    EXPECT_GT(fidelity.views[1].flip[studio], 0.05);
+    EXPECT_EQ(fidelity.views[2].flip[studio], 0.0);
+    EXPECT_EQ(fidelity.pictures[studio].worst.view, 1U);
+}
+
+TEST_F(FidelityTest, SamplesTheViewsOfTheFloor) {
+    const Scene coarse = plain_sphere(test::sphere(8, 6));
+    FidelityOptions pictures = tiny_pictures;
+    pictures.views = 5;
+    FidelityMeter meter(context(), plain_sphere(), pictures);
+    const Fidelity fidelity = meter.measure(coarse);
+    const SampledFidelity sampled = meter.measure_sampled(coarse);
+    EXPECT_EQ(sampled.flip, fidelity.sampled.flip);
+    EXPECT_EQ(sampled.normals.p99, fidelity.sampled.normals.p99);
+    EXPECT_EQ(sampled.silhouette_pixels, fidelity.sampled.silhouette_pixels);
+    EXPECT_LT(sampled.normals.pixels, fidelity.normals.pixels / 2);
+    // The means of two views are between those of each.
+    const auto [low, high] = std::minmax(fidelity.views[0].degrees, fidelity.views[4].degrees);
+    EXPECT_GE(sampled.normals.mean, low);
+    EXPECT_LE(sampled.normals.mean, high);
+    EXPECT_EQ(meter.measure_sampled(plain_sphere()).flip[studio], 0.0);
 }
 
 TEST_F(FidelityTest, CountsAMissingResult) {
@@ -337,6 +373,9 @@ TEST_F(FidelityTest, RefusesSourcesAndOptionsOutOfRange) {
     for (const FidelityOptions& wrong : {FidelityOptions{.size = 8}, FidelityOptions{.samples = 2},
                                          FidelityOptions{.views = 0}, FidelityOptions{.views = 13}})
         EXPECT_THROW(FidelityMeter(context(), plain_sphere(), wrong), InvalidInput);
+    FidelityOptions no_direction = tiny_pictures;
+    no_direction.more_views = {glm::vec3(0.0F)};
+    EXPECT_THROW(FidelityMeter(context(), plain_sphere(), no_direction), InvalidInput);
 }
 
 TEST(FidelityMargin, IsTheRadiusOfTheFilters) {

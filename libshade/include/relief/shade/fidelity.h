@@ -45,10 +45,14 @@ inline constexpr auto enum_names<shade::FidelityLight> =
 namespace shade {
 
 /// The directions from the center of the model to the camera: the vertices of an icosahedron in
-/// world space, in opposite pairs. The y axis points up in all pictures.
+/// world space, in opposite pairs. The y axis points up in all pictures; in views along it, the x
+/// axis points right.
 inline constexpr std::size_t fidelity_view_count = 12;
 /// \param view  less than fidelity_view_count \return a unit vector
 glm::vec3 fidelity_view(std::size_t view);
+
+/// Every fourth of these views is one of SampledFidelity and of the noise floor: 0, 4 and 8.
+inline constexpr std::size_t fidelity_sample_stride = 4;
 
 /// The radius of FLIP's filters in pixels: pictures are compared up to this distance from the
 /// silhouettes.
@@ -59,6 +63,9 @@ struct FidelityOptions {
     /// Samples of a pixel: a square number from 1 to 16. All of them are shaded.
     int samples = 4;
     std::size_t views = fidelity_view_count;  ///< The first ones, from 1 to 12.
+    /// More directions to the camera, finite and not zero. Their views are numbered from `views`
+    /// on.
+    std::vector<glm::vec3> more_views{};
 };
 
 /// The view in which a figure is largest; ties: the first view wins.
@@ -108,9 +115,17 @@ struct SilhouetteLoss {
 
 /// The figures of a view.
 struct ViewLoss {
+    glm::vec3 from{0.0F};  ///< The direction to the camera, a unit vector.
     std::array<double, fidelity_light_count> flip{};  ///< Means, by FidelityLight.
     double degrees = 0.0;                             ///< The mean.
     double silhouette_pixels = 0.0;                   ///< The width.
+};
+
+/// The figures in the views 0, 4 and 8, as far as they are drawn: those of the noise floor.
+struct SampledFidelity {
+    std::array<double, fidelity_light_count> flip{};  ///< Means, by FidelityLight.
+    NormalLoss normals;                               ///< Without a floor.
+    double silhouette_pixels = 0.0;
 };
 
 struct Fidelity {
@@ -118,6 +133,7 @@ struct Fidelity {
     NormalLoss normals;
     SilhouetteLoss silhouettes;
     std::vector<ViewLoss> views;
+    SampledFidelity sampled;
     /// The mean FLIP in the studio on black instead of middle gray, in the views 0, 4 and 8. Views
     /// in which they differ by more than 10 %, because silhouettes dominate, are counted as a
     /// finding.
@@ -128,6 +144,10 @@ struct Fidelity {
     /// The largest mean of the lights, which a limit of the difference of pictures applies to.
     [[nodiscard]] double max_picture_mean() const;
 };
+
+/// Returns the numbers of the views; the largest difference of pictures, with any light, is first.
+/// Ties: the first view wins.
+std::vector<std::size_t> worst_views_first(const Fidelity& loss);
 
 /// Measures any number of models against one source, whose pictures are drawn once.
 ///
@@ -159,6 +179,11 @@ class FidelityMeter {
     ///         result reaches the edge of the picture, and in which the models share no pixel
     /// \throws as Renderer does
     Fidelity measure(const Scene& result, Report& report = IgnoredReport());
+
+    /// Draws and compares a model only in the views of SampledFidelity, which is faster: for the
+    /// stages between the source and a result. The arguments are those of measure(), but no views
+    /// are reported.
+    SampledFidelity measure_sampled(const Scene& result, Report& report = IgnoredReport());
 
   private:
     struct Implementation;
