@@ -10,9 +10,9 @@
 namespace relief::make {
 namespace {
 
-std::map<std::string, std::string> metadata_of_normals() {
+std::map<std::string, std::string> metadata_of_normals(int bits) {
     NormalMapFormat format;
-    format.bits = 8;
+    format.bits = bits;
     return normal_map_metadata(format);
 }
 
@@ -50,8 +50,11 @@ std::vector<AssetMap> maps_of(const Asset& asset) {
     const auto of_8_bits = [](LayerKind kind, double range = 1.0) {
         return LayerCoding{kind, 8, range};
     };
-    maps.push_back(
-        {"normal", "normals", &asset.normal_map, {TextureSlot::normal}, metadata_of_normals()});
+    maps.push_back({"normal",
+                    "normals",
+                    &asset.normal_map,
+                    {TextureSlot::normal},
+                    metadata_of_normals(asset.normal_map.bits())});
     add(LayerKind::occlusion, "occlusion", asset.occlusion_map, {TextureSlot::occlusion},
         of_8_bits(LayerKind::occlusion));
     const bool has_opacity = asset.color_map && asset.color_map->channels == 4;

@@ -110,6 +110,16 @@ void append(Image& image, std::span<const std::byte> codes) {
         image.samples);
 }
 
+/// Codes rows of a normal map.
+void append_normals(Image& map, const BakedRows& rows, Report& report) {
+    NormalMapFormat format;
+    format.bits = map.bits();
+    const ImageView normals(rows.normals.data(), map.width, rows.row_count, 3);
+    const Image codes = encode_normal_map(normals, format, report);
+    std::visit([&](const auto& samples) { append(map, std::as_bytes(std::span(samples))); },
+               codes.samples);
+}
+
 /// A layer that is collected from rows, and the range of its codes.
 class LayerMap {
   public:
@@ -332,13 +342,13 @@ void MapBaker::bake_surface(const Baker& baker, Report& report) {
         further_.emplace_back(LayerCoding{kind, 16, range_of(kind, bounds)}, size);
     for (LayerMap& layer : further_)
         maps.push_back(&layer);
-    asset_.normal_map = empty_map(size, 3, 8, ColorSpace::data);
-    NormalMapFormat format;
-    format.bits = 8;
+    asset_.normal_map = empty_map(size, 3, options_.normal_bits, ColorSpace::data);
+    if (options_.keep_baked_normals)
+        asset_.baked_normals = empty_map(size, 3, 16, ColorSpace::data);
+    Report same;  // Normals that are not finite are counted once.
     const auto take = [&](const BakedRows& rows) {
-        const ImageView normals(rows.normals.data(), size.x, rows.row_count, 3);
-        const Image codes = encode_normal_map(normals, format, report);
-        append(asset_.normal_map, std::as_bytes(codes.as<std::uint8_t>()));
+        append_normals(asset_.normal_map, rows, report);
+        if (asset_.baked_normals) append_normals(*asset_.baked_normals, rows, same);
         for (LayerMap* layer : maps)
             layer->add(rows, report);
     };

@@ -36,6 +36,10 @@ void check(const AssetOptions& options) {
         if (std::ranges::count(options.layers, kind) > 1)
             throw InvalidInput(fmt::format("the layer {} is requested twice", enum_name(kind)));
     }
+    if (options.normal_bits != 8 && options.normal_bits != 16) {
+        throw InvalidInput(
+            fmt::format("the normal map has {} bits, but must have 8 or 16", options.normal_bits));
+    }
     if (options.remesh == Remeshing::always && options.keep_texcoords)
         throw InvalidInput("a mesh that is remeshed cannot keep its texture coordinates");
 }

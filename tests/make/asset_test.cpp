@@ -116,6 +116,28 @@ TEST(MakeAsset, RunsEachStageThroughTheCallback) {
     EXPECT_EQ(stages, stages_of(options));
 }
 
+TEST(MakeAsset, CodesNormalsWithTheRequestedBits) {
+    const AssetSource source = source_of(rippled_sphere(32));
+    AssetOptions options = quick_options(100);
+    options.keep_baked_normals = true;
+    const Asset coarse = make_asset(source, options);
+    EXPECT_EQ(coarse.normal_map.bits(), 8);
+    ASSERT_TRUE(coarse.baked_normals);
+    EXPECT_EQ(coarse.baked_normals->bits(), 16);
+    options.keep_baked_normals = false;
+    options.normal_bits = 16;
+    const Asset fine = make_asset(source, options);
+    EXPECT_FALSE(fine.baked_normals);
+    EXPECT_EQ(fine.normal_map.samples, coarse.baked_normals->samples);
+    const auto rough = coarse.normal_map.as<std::uint8_t>();
+    const auto exact = fine.normal_map.as<std::uint16_t>();
+    ASSERT_EQ(rough.size(), exact.size());
+    for (std::size_t i = 0; i < rough.size(); ++i)
+        ASSERT_NEAR(rough[i] / 255.0, exact[i] / 65535.0, 0.5 / 255.0 + 1.0 / 65535.0) << i;
+    options.normal_bits = 12;
+    EXPECT_THROW(make_asset(source, options), InvalidInput);
+}
+
 TEST(MakeAsset, KeepsTextureCoordinates) {
     AssetOptions options = quick_options(60);
     options.keep_texcoords = true;
@@ -308,6 +330,14 @@ TEST_F(WrittenAsset, IsReadBackAsItWasMade) {
         EXPECT_EQ(view.images.size(), 3U);
         EXPECT_EQ(view.images.front().name, "a_normal");
     }
+}
+
+TEST_F(WrittenAsset, KeepsSixteenBits) {
+    AssetOptions options = quick_options(100);
+    options.normal_bits = 16;
+    const Asset fine = make_asset(source_of(rippled_sphere(24)), options);
+    write_asset(folder / "fine.glb", fine, 0);
+    EXPECT_TRUE(verify_asset(folder / "fine.glb", fine).empty());
 }
 
 TEST_F(WrittenAsset, HasTheRoughnessOfTheSource) {

@@ -69,6 +69,9 @@ struct AssetOptions {
     int samples = 1;          ///< Per texel (BakeMapOptions::samples).
     /// Further layers, of 16 bits: height, curvature and position.
     std::vector<LayerKind> layers;
+    int normal_bits = 8;  ///< Of the normal map: 8 or 16.
+    /// Also returns the normals before they are coded (Asset::baked_normals).
+    bool keep_baked_normals = false;
     std::size_t levels = 0;  ///< Levels of detail; each has half the triangles of the one before.
     ExecutionOptions execution;
     /// Runs a stage, for measurements and progress; absent: it is only called. Exceptions must
@@ -117,8 +120,12 @@ struct Asset {
     std::optional<AtlasStats> atlas;       ///< Absent with AssetOptions::keep_texcoords.
     BakeResult bake;
     BakeAgreement agreement;
-    // The maps of the material have 8 bits. A property that is the same everywhere has no map.
-    Image normal_map;                    ///< Green up, zero at 127.5, as in glTF.
+    // The other maps of the material have 8 bits. A property that is the same everywhere has no
+    // map.
+    Image normal_map;  ///< Green up; of 8 bits with zero at 127.5, as in glTF, or of 16 bits.
+    /// With AssetOptions::keep_baked_normals: the same with 16 bits, whose error is below 0.002
+    /// degrees.
+    std::optional<Image> baked_normals;
     std::optional<Image> occlusion_map;  ///< Without a `surface_map`.
     std::optional<Image> color_map;      ///< sRGB, with opacity in alpha unless it is opaque.
     /// Occlusion, roughness and metalness in the channels of glTF.
