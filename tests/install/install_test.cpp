@@ -377,6 +377,20 @@ TEST(AddedFolder, GivesTheMeshComponentAlone) {
     EXPECT_THAT(commands, testing::Not(HasSubstr("libmesh/src/io/")));
 }
 
+// scripts/dev/try-windows builds these targets. Compiling them would take minutes; Ninja names the
+// first file that is missing.
+TEST_LABELS(slow);
+TEST(PortablePreset, HasAllFilesOfItsBuild) {
+    const TemporaryDirectory folder;
+    const std::string source = source_directory().string();
+    expect_success("cmake --preset portable -S '" + source + "' -B build", folder.path());
+    if (HasFailure()) return;
+    const std::string steps =
+        run_clean("cmake --build build -- -n -v portable_tests result_hashes", folder.path()).out;
+    EXPECT_THAT(steps, HasSubstr("/tests/mesh/c/c_usage.c"));
+    EXPECT_THAT(steps, testing::Not(HasSubstr("/libmesh/src/c/c_bake.cpp")));
+}
+
 // A shared library of the objects of the static one, which are position independent.
 TEST_LABELS(slow);
 TEST(SharedMesh, ExportsTheFunctionsOfPublicHeaders) {
