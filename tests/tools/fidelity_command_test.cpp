@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 
@@ -28,10 +29,10 @@ TEST(FidelityCommand, MeasuresAChainAgainstItsSource) {
     workplace.write_square("square.obj");
     // Half of the square.
     workplace.write("half.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nf 1 2 3\n");
-    const ProgramResult result =
-        workplace.run(std::string("relief-accuracy fidelity square.obj square.obj half.obj "
-                                  "--report out/loss.json --pictures out/loss") +
-                      small);
+    const ProgramResult result = workplace.run(
+        std::string("relief-accuracy fidelity square.obj square.obj half.obj "
+                    "--report out/loss.json --pictures out/loss --view 0,0 --view 90,0") +
+        small);
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, AllOf(HasSubstr("source    square.obj: 2 triangles, 2.828 across"),
                                   HasSubstr("after     square.obj: 2 triangles"),
@@ -48,6 +49,20 @@ TEST(FidelityCommand, MeasuresAChainAgainstItsSource) {
     EXPECT_GT(half["pictures"]["studio"]["mean"], 0.1);
     EXPECT_GT(half["silhouettes"]["width"], 1.0);
     EXPECT_GT(half["distance_from_source"]["max"], 1.0);
+    // The part that is farther than d is (1 - d / sqrt(2))^2 / 2.
+    EXPECT_NEAR(half["distance_from_source"]["p95"].get<double>(),
+                std::sqrt(2.0) * (1.0 - std::sqrt(0.1)), 0.02);
+    // The views on request follow the two others. One shows the square from its front, where half
+    // of it is missing, and one from its edge, where nothing is seen.
+    ASSERT_EQ(half["views"].size(), 4U);
+    const auto view = [&](std::size_t number) {
+        return *std::ranges::find_if(half["views"],
+                                     [&](const json& one) { return one["view"] == number; });
+    };
+    EXPECT_EQ(view(2)["from"], json({0.0, 0.0, 1.0}));
+    EXPECT_GT(view(2)["silhouette_pixels"], 1.0);
+    EXPECT_NEAR(view(3)["from"][0].get<double>(), 1.0, 1e-6);
+    EXPECT_LT(view(3)["silhouette_pixels"], view(2)["silhouette_pixels"]);
     EXPECT_EQ(half["distance_to_source"]["max"], 0.0);
     const auto largest = [&](std::size_t view) {
         const json& flip = half["views"][view]["flip"];
@@ -79,12 +94,15 @@ TEST(FidelityCommand, RefusesWrongUse) {
     workplace.write_square("square.obj");
     workplace.write("empty.obj", "v 0 0 0\n");
     const std::string line = "fidelity square.obj ";
-    expect_refusals(workplace, "relief-accuracy", "old",
-                    {{"fidelity square.obj", 2, "no RESULT (name the models to compare"},
-                     {line + "square.obj --size 8", 2, "--size 8: not between 16 and 4096"},
-                     {line + "square.obj --samples 2", 2, "--samples 2: not one of 1, 4, 9, 16"},
-                     {line + "square.obj --report square.obj", 2, "--report square.obj: "},
-                     {line + "missing.obj", 1, "missing.obj: "}});
+    expect_refusals(
+        workplace, "relief-accuracy", "old",
+        {{"fidelity square.obj", 2, "no RESULT (name the models to compare"},
+         {line + "square.obj --size 8", 2, "--size 8: not between 16 and 4096"},
+         {line + "square.obj --samples 2", 2, "--samples 2: not one of 1, 4, 9, 16"},
+         {line + "square.obj --view 30", 2, "--view 30: not azimuth,elevation"},
+         {line + "square.obj --view 30,91", 2, "--view 30,91: 91: not between -90 and 90 degrees"},
+         {line + "square.obj --report square.obj", 2, "--report square.obj: "},
+         {line + "missing.obj", 1, "missing.obj: "}});
 }
 
 }  // namespace

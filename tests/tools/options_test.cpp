@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/view_direction.h"
 #include "relief/mesh/limits.h"
 
 namespace relief::tools {
@@ -140,6 +141,20 @@ TEST(LimitOptions, SetTheLimitsOfTheProcess) {
     EXPECT_EQ(given("--max-memory", "0G"), "--max-memory 0G: less than a byte");
     EXPECT_EQ(given("--max-pixels", "0"), "--max-pixels 0: not between 1 and 1000000000000");
     set_input_limits({});
+}
+
+TEST(ViewOption, HasTheDirectionOfTheCamera) {
+    const auto expect_near = [](const std::string& text, const glm::vec3& expected) {
+        EXPECT_LT(glm::distance(parse_view("--view " + text, text), expected), 1e-6F) << text;
+    };
+    expect_near("0,0", {0, 0, 1});
+    expect_near("90,0", {1, 0, 0});
+    expect_near("45,90", {0, 1, 0});
+    EXPECT_EQ(parse_view("--view", "90,-90"), glm::vec3(0, -1, 0)) << "right angles are exact";
+    for (const char* text : {"30,20", "-120.5,-30", "179,-89", "0,0"})
+        EXPECT_EQ(view_text(parse_view("--view", text)), text);
+    for (const char* text : {"30", "30,20,1", "30,x", "361,0", "0,91"})
+        EXPECT_THROW(parse_view("--view", text), UsageError) << text;
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +18,7 @@
 #include "common/options.h"
 #include "common/summary.h"
 #include "common/text.h"
+#include "common/view_direction.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/topology.h"
 #include "relief/shade/fidelity.h"
@@ -104,19 +104,6 @@ MeasuredChain measured_chain(const FidelityRequest& request, Stages& stages) {
     return chain;
 }
 
-/// Returns the indices of the views; the largest difference of pictures is first.
-std::vector<std::size_t> worst_first(const Fidelity& loss) {
-    std::vector<std::size_t> order(loss.views.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto largest = [&](std::size_t view) {
-        const auto& flip = loss.views[view].flip;
-        return *std::max_element(flip.begin(), flip.end());
-    };
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return largest(a) > largest(b); });
-    return order;
-}
-
 constexpr std::string_view row_format = "{:<24}{:>9}{:>9}{:>12}{:>10}{:>13}";
 
 std::string row(const std::string& name, const std::array<double, fidelity_light_count>& flip,
@@ -146,7 +133,8 @@ std::string distance_text(const DistanceStats& stats, const MeasuredChain& chain
                            chain.diagonal > 0.0 ? 100.0 * value / chain.diagonal : 0.0,
                            value / loss.diameter * loss.pixels_across);
     };
-    return fmt::format("{}, {}", text("mean", stats.mean), text("largest", stats.max));
+    return fmt::format("{}, {}, {}", text("mean", stats.mean), text("95 %", stats.p95),
+                       text("largest", stats.max));
 }
 
 std::vector<std::string> stage_lines(const MeasuredStage& stage, const MeasuredChain& chain) {
@@ -162,14 +150,14 @@ std::vector<std::string> stage_lines(const MeasuredStage& stage, const MeasuredC
                                 fmt::format("{:.3f}", loss.normals.p99), ""));
     lines.push_back(row("noise floor (mean)", flip_of(loss, &PictureLoss::floor),
                         loss.normals.floor, loss.silhouettes.floor));
-    for (const std::size_t view : worst_first(loss)) {
-        const glm::vec3 from = fidelity_view(view);
+    for (const std::size_t view : worst_views_first(loss)) {
         const ViewLoss& one = loss.views[view];
-        lines.push_back(
-            row(fmt::format("view {}: {:.2f} {:.2f} {:.2f}", view, from.x, from.y, from.z),
-                one.flip, one.degrees, one.silhouette_pixels));
+        lines.push_back(row(
+            fmt::format("view {}: {:.2f} {:.2f} {:.2f}", view, one.from.x, one.from.y, one.from.z),
+            one.flip, one.degrees, one.silhouette_pixels));
     }
-    lines.push_back(fmt::format("largest angle {:.1f} degrees", loss.normals.max));
+    lines.push_back(fmt::format("largest angle {:.3f} degrees, root mean square {:.3f}",
+                                loss.normals.max, loss.normals.rms));
     lines.push_back("from the source: " + distance_text(stage.distance.from_a, chain, loss));
     lines.push_back("to the source: " + distance_text(stage.distance.from_b, chain, loss));
     return lines;
@@ -180,8 +168,11 @@ Json json_of(const WorstView& worst) {
 }
 
 Json json_of(const DistanceStats& stats) {
-    return {
-        {"mean", stats.mean}, {"rms", stats.rms}, {"max", stats.max}, {"samples", stats.samples}};
+    return {{"mean", stats.mean},
+            {"rms", stats.rms},
+            {"p95", stats.p95},
+            {"max", stats.max},
+            {"samples", stats.samples}};
 }
 
 Json json_of(const MeasuredStage& stage) {
@@ -195,11 +186,10 @@ Json json_of(const MeasuredStage& stage) {
                                                               {"floor", one.floor}};
     }
     Json views = Json::array();
-    for (const std::size_t view : worst_first(loss)) {
-        const glm::vec3 from = fidelity_view(view);
+    for (const std::size_t view : worst_views_first(loss)) {
         const ViewLoss& one = loss.views[view];
         views.push_back({{"view", view},
-                         {"from", {from.x, from.y, from.z}},
+                         {"from", {one.from.x, one.from.y, one.from.z}},
                          {"flip", one.flip},
                          {"degrees", one.degrees},
                          {"silhouette_pixels", one.silhouette_pixels}});
@@ -241,7 +231,8 @@ Summary summary_of(const FidelityRequest& request, const MeasuredChain& chain) {
                    {"diagonal", chain.diagonal}}}});
     summary.add("pictures",
                 fmt::format("{} of {} x {} pixels, {} a pixel, {:.0f} pixels across the model",
-                            counted(request.how.views, "view"), request.how.size, request.how.size,
+                            counted(request.how.views + request.how.more_views.size(), "view"),
+                            request.how.size, request.how.size,
                             counted(static_cast<std::size_t>(request.how.samples), "sample"),
                             first.pixels_across),
                 {{"size", request.how.size},
@@ -350,6 +341,7 @@ void add_options(CLI::App& app, FidelityRequest& request) {
                       parse_integer(subject, text, 1, static_cast<int>(fidelity_view_count)));
               })
         .group(pictures);
+    add_view_option(app, request.how.more_views).group(pictures);
     add_choice<int>(app, "--samples", {{"1", 1}, {"4", 4}, {"9", 9}, {"16", 16}},
                     "The samples of a pixel. Default: 4.",
                     [&](int samples) { request.how.samples = samples; })

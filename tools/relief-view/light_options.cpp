@@ -7,7 +7,6 @@
 
 #include "common/options.h"
 #include "common/text.h"
-#include "portable_math.h"
 
 namespace relief::tools {
 using namespace relief::shade;
@@ -105,17 +104,6 @@ SpotLight spot(const std::string& subject, std::string_view text) {
 }
 
 }  // namespace
-
-glm::vec3 towards(float azimuth, float elevation) {
-    const auto sine = [](float angle) {
-        return static_cast<float>(relief::detail::portable::sin(static_cast<double>(angle)));
-    };
-    const auto cosine = [](float angle) {
-        return static_cast<float>(relief::detail::portable::cos(static_cast<double>(angle)));
-    };
-    return {cosine(elevation) * sine(azimuth), sine(elevation),
-            cosine(elevation) * cosine(azimuth)};
-}
 
 LightOption parse_light(const std::string& subject, const std::string& text) {
     if (text == "none") return NoLight{};

@@ -15,18 +15,13 @@
 #include <glm/glm.hpp>
 #include <string>
 
+#include "common/view_direction.h"
 #include "view_options.h"
 
 namespace relief::tools {
 
 /// \param subject  the option for messages, for example "--light point:1,2"
 LightOption parse_light(const std::string& subject, const std::string& text);
-
-/// The unit vector of a direction.
-///
-/// \param azimuth  radians from +z towards +x
-/// \param elevation  radians above the horizon
-glm::vec3 towards(float azimuth, float elevation);
 
 /// Parses "azimuth,elevation[,factor]" or "azimuth,elevation@x,y,z,distance", in degrees.
 /// \throws UsageError
