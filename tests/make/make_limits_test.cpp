@@ -39,37 +39,90 @@ TEST(LossLimits, ApplyToThePrintedFigures) {
     loss.pictures[1].mean = 0.09;
     LossLimits limits;
     limits.normals = {2.0, ErrorKind::mean};
-    EXPECT_FALSE(attempt_of(loss, limits, 100, {64, 64}).exceeded) << "2.0000 is printed";
+    EXPECT_FALSE(attempt_of(loss, limits, 100, {64, 64}, 8).exceeded) << "2.0000 is printed";
     limits.flip = 0.05;
-    const LimitAttempt attempt = attempt_of(loss, limits, 100, {64, 64});
+    const LimitAttempt attempt = attempt_of(loss, limits, 100, {64, 64}, 8);
     EXPECT_EQ(attempt.exceeded, LossLimit::flip);
     EXPECT_DOUBLE_EQ(attempt.ratio, 0.09 / 0.05);
     limits.normals.degrees = 0.5;
-    EXPECT_EQ(attempt_of(loss, limits, 100, {64, 64}).exceeded, LossLimit::degrees);
+    EXPECT_EQ(attempt_of(loss, limits, 100, {64, 64}, 8).exceeded, LossLimit::degrees);
 }
 
+constexpr GrowthStep twice_triangles{Growth::triangles, 2};
+constexpr GrowthStep twice_size{Growth::size, 2};
+
 TEST(LossLimits, GrowWhatDominatesAndHelps) {
-    std::vector<LimitAttempt> attempts = {exceeding_attempt(100, 64, 1.0, 4.0)};
-    EXPECT_EQ(next_growth(attempts, 1000), Growth::triangles) << "wide silhouettes";
+    const LossLimits limits;
+    std::vector<LimitAttempt> attempts = {exceeding_attempt(100, 64, 1.0, 2.0)};
+    EXPECT_EQ(next_growth(attempts, limits, 1000), twice_triangles) << "wide silhouettes";
     attempts.front().silhouettes = 0.1;
-    EXPECT_EQ(next_growth(attempts, 1000), Growth::size);
-    attempts.front().next = Growth::size;
-    attempts.push_back(exceeding_attempt(100, 128, 0.1, 3.9));
-    EXPECT_EQ(next_growth(attempts, 1000), Growth::triangles) << "larger maps did not help";
-    attempts.back().ratio = 2.0;
-    EXPECT_EQ(next_growth(attempts, 1000), Growth::size);
+    EXPECT_EQ(next_growth(attempts, limits, 1000), twice_size);
+    attempts.front().next = twice_size;
+    attempts.push_back(exceeding_attempt(100, 128, 0.1, 1.9));
+    EXPECT_EQ(next_growth(attempts, limits, 1000), twice_triangles) << "larger maps did not help";
+    attempts.back().ratio = 1.5;
+    EXPECT_EQ(next_growth(attempts, limits, 1000), twice_size);
+}
+
+TEST(LossLimits, GrowByFourWhereTwoCannotSuffice) {
+    const LossLimits limits;
+    // Twice the triangles at most halve an error, and maps of twice the size at most quarter it.
+    const auto next = [&](double silhouettes, double ratio, std::size_t max_triangles) {
+        return next_growth({exceeding_attempt(100, 64, silhouettes, ratio)}, limits, max_triangles);
+    };
+    EXPECT_EQ(next(1.0, 2.1, 1000), (GrowthStep{Growth::triangles, 4}));
+    EXPECT_EQ(next(1.0, 2.1, 150), twice_triangles) << "the source has no more";
+    EXPECT_EQ(next(0.1, 3.9, 1000), twice_size);
+    EXPECT_EQ(next(0.1, 4.1, 1000), (GrowthStep{Growth::size, 4}));
+}
+
+TEST(LossLimits, UseSixteenBitsIfTheCodesExceedTheLimit) {
+    LossLimits limits;
+    limits.normals = {2.0, ErrorKind::p99};
+    shade::Fidelity loss;
+    loss.normals.p99 = 2.3;
+    LimitAttempt attempt = attempt_of(loss, limits, 100, {64, 64}, 8);
+    EXPECT_TRUE(may_be_codes(attempt, limits));
+    EXPECT_EQ(next_growth({attempt}, limits, 1000), twice_size) << "not measured";
+    shade::NormalLoss coded, baked;
+    coded.p99 = 2.4;
+    baked.p99 = 2.2;
+    note_baked(attempt, limits, coded, baked);
+    EXPECT_EQ(attempt.baked_degrees, 2.1);
+    EXPECT_EQ(next_growth({attempt}, limits, 1000), twice_size) << "the codes are not enough";
+    baked.p99 = 2.0;
+    note_baked(attempt, limits, coded, baked);
+    attempt.next = next_growth({attempt}, limits, 1000);
+    EXPECT_EQ(attempt.next, (GrowthStep{Growth::bits, 2}));
+    EXPECT_THAT(
+        limit_lines(limits, {attempt}).front(),
+        HasSubstr("2.3000 degrees (99 %), FLIP 0.0000; 1.9000 degrees before the codes; more "
+                  "than --max-error; next normals of 16 bits"));
+    // The next step after 16 bits does not depend on how much they helped.
+    LimitAttempt fine = attempt_of(loss, limits, 100, {64, 64}, 16);
+    EXPECT_FALSE(may_be_codes(fine, limits));
+    EXPECT_EQ(next_growth({attempt, fine}, limits, 1000), twice_size);
+    // A larger excess is not that of codes, and neither is that of pictures.
+    loss.normals.p99 = 2.5;
+    EXPECT_FALSE(may_be_codes(attempt_of(loss, limits, 100, {64, 64}, 8), limits));
+    limits.flip = 0.01;
+    loss.normals.p99 = 2.3;
+    loss.pictures[0].mean = 0.1;
+    EXPECT_FALSE(may_be_codes(attempt_of(loss, limits, 100, {64, 64}, 8), limits));
 }
 
 TEST(LossLimits, EndAtTheirBounds) {
-    std::vector<LimitAttempt> attempts = {exceeding_attempt(1000, 64, 1.0, 4.0)};
-    EXPECT_EQ(next_growth(attempts, 1000), Growth::size) << "the source has no more triangles";
+    const LossLimits limits;
+    std::vector<LimitAttempt> attempts = {exceeding_attempt(1000, 64, 1.0, 2.0)};
+    EXPECT_EQ(next_growth(attempts, limits, 1000), twice_size)
+        << "the source has no more triangles";
     attempts.front().size = glm::ivec2(max_limit_size);
-    EXPECT_EQ(next_growth(attempts, 1000), std::nullopt);
-    EXPECT_EQ(next_growth(attempts, 1001), Growth::triangles);
+    EXPECT_EQ(next_growth(attempts, limits, 1000), std::nullopt);
+    EXPECT_EQ(next_growth(attempts, limits, 1001), twice_triangles);
     attempts.assign(max_attempts, exceeding_attempt(100, 64, 1.0, 4.0));
     for (LimitAttempt& attempt : attempts)
-        attempt.next = Growth::triangles;
-    EXPECT_EQ(next_growth(attempts, 1000), std::nullopt);
+        attempt.next = twice_triangles;
+    EXPECT_EQ(next_growth(attempts, limits, 1000), std::nullopt);
 }
 
 /// Writes a sphere with ripples of about 4,000 triangles.
@@ -96,7 +149,7 @@ TEST(MakeLimits, ChooseTrianglesAndMapsThatHoldThem) {
         workplace.run(line + " --max-error 3 --max-error-kind mean --report out/ball.json");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("--max-error 3 held"));
-    EXPECT_THAT(result.out, HasSubstr("more than --max-error; next twice the "));
+    EXPECT_THAT(result.out, HasSubstr("more than --max-error; next "));
     const auto report = nlohmann::json::parse(workplace.read("out/ball.json"));
     EXPECT_LE(report["loss"]["figures"][3]["mean"].get<double>(), 3.00005);
     const auto& attempts = report["limits"]["attempts"];
@@ -111,6 +164,35 @@ TEST(MakeLimits, ChooseTrianglesAndMapsThatHoldThem) {
     EXPECT_EQ(report["stages"].size(), 9U);
     EXPECT_THAT(report["command"].get<std::string>(),
                 HasSubstr(" --max-error 3 --max-error-kind mean"));
+}
+
+TEST_LABELS(slow, not_sanitized);
+TEST(MakeLimits, CodeNormalsWithSixteenBitsIfThatSuffices) {
+    const Workplace workplace;
+    workplace.write_square("out/square.obj");
+    // The codes of 8 bits are 0.32 degrees from flat.
+    const std::string line =
+        "relief make out/square.obj -o out/a.glb --size 32 --padding 2 --occlusion-rays 0 "
+        "--max-error 0.2 --report out/a.json";
+    const ProgramResult result = workplace.run(line);
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("; next normals of 16 bits"));
+    const auto report = nlohmann::json::parse(workplace.read("out/a.json"));
+    const auto& attempts = report["limits"]["attempts"];
+    ASSERT_EQ(attempts.size(), 2U);
+    EXPECT_EQ(attempts[0]["next"], "bits");
+    EXPECT_GT(attempts[0]["degrees"].get<double>(), 0.2);
+    EXPECT_EQ(attempts[1]["normal_bits"], 16);
+    EXPECT_EQ(attempts[1]["size"], attempts[0]["size"]);
+    EXPECT_EQ(report["maps"][0]["bits"], 16);
+    // It is the asset that --normal-bits 16 makes.
+    std::filesystem::create_directory(workplace / "out/b");
+    ASSERT_EQ(workplace
+                  .run("relief make out/square.obj -o out/b/a.glb --size 32 --padding 2 "
+                       "--occlusion-rays 0 --normal-bits 16")
+                  .exit_code,
+              0);
+    EXPECT_EQ(workplace.read("out/a.glb"), workplace.read("out/b/a.glb"));
 }
 
 TEST_LABELS(slow, not_sanitized);

@@ -65,6 +65,11 @@ TEST(MakePage, HasTheMeasuredLoss) {
     for (const char* row : {"FLIP, studio", "FLIP, grazing", "FLIP, base-color", "normals, degrees",
                             "silhouettes, pixels"})
         EXPECT_EQ(count_of(page, std::string("<th scope=\"row\">") + row + "</th>"), 1U) << row;
+    for (const char* text : {"<h3>After each stage</h3>", "<th scope=\"row\">decimated</th>",
+                             "<th scope=\"row\">baked</th>", "<th scope=\"row\">coded</th>",
+                             "<th scope=\"row\">source to asset</th>", "degrees, 99 %",
+                             "All views, the worst first", "alt=\"FLIP, studio\""})
+        EXPECT_EQ(count_of(page, text), 1U) << text;
     // The asset of a square is the same square, also in its color. The codes of its normal map are
     // 0.32 degrees from flat.
     result = workplace.run(line + " --max-error 1 --max-error-kind mean --report out/a.json");
@@ -76,6 +81,14 @@ TEST(MakePage, HasTheMeasuredLoss) {
         const bool is_flip = figure["name"].get<std::string>().starts_with("FLIP");
         EXPECT_LT(figure["mean"].get<double>(), is_flip ? 0.05 : 0.6) << figure;
     }
+    // Only the codes lose something.
+    const nlohmann::json& stages = loss["stages"];
+    ASSERT_EQ(stages.size(), 3U);
+    EXPECT_LT(stages[0]["degrees"]["mean"].get<double>(), 0.01);
+    EXPECT_LT(stages[1]["degrees"]["mean"].get<double>(), 0.01);
+    EXPECT_GT(stages[2]["degrees"]["mean"].get<double>(), 0.1);
+    EXPECT_EQ(stages[2]["distance_from_source"]["max"], 0.0);
+    EXPECT_EQ(loss["by_view"].size(), 12U);
 }
 
 TEST(ReducedPicture, HasTheMeanOfEachSquare) {
@@ -90,6 +103,11 @@ TEST(ReducedPicture, HasTheMeanOfEachSquare) {
     EXPECT_EQ(std::get<std::vector<std::uint8_t>>(small.samples),
               (std::vector<std::uint8_t>{3, 11}));
     EXPECT_EQ(reduced(image, 4).width, 4);
+    // Sixteen bits become eight.
+    image.samples = std::vector<std::uint16_t>{0, 514, 2570, 2570, 1028, 1542, 2570, 3598};
+    EXPECT_EQ(std::get<std::vector<std::uint8_t>>(reduced(image, 2).samples),
+              (std::vector<std::uint8_t>{3, 11}));
+    EXPECT_EQ(std::get<std::vector<std::uint8_t>>(reduced(image, 4).samples)[1], 2);
 }
 
 }  // namespace

@@ -134,6 +134,11 @@ TEST(MakeCommand, RefusesWhatItCannotDo) {
                      {"relief make data/vase.obj out/old.glb --triangles 0", 2, "--triangles 0: "},
                      {"relief make data/vase.obj out/old.glb --size 8", 2, "--size 8: "},
                      {"relief make data/vase.obj out/old.glb --crease 200", 2, "--crease 200: "},
+                     {"relief make data/vase.obj out/old.glb --view 30,20", 2,
+                      "--view: has no effect, because no loss is measured"},
+                     {"relief make data/vase.obj out/old.glb --loss --view 30", 2, "--view 30: "},
+                     {"relief make data/vase.obj out/old.glb --normal-bits 12", 2,
+                      "--normal-bits 12: not one of 8, 16"},
                      {"relief make data/vase.obj none/old.glb", 1,
                       "none/old.glb: the folder none does not exist"}});
 }

@@ -18,6 +18,7 @@
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/summary.h"
+#include "common/view_direction.h"
 #include "driver.h"
 #include "make_cache.h"
 #include "make_index.h"
@@ -98,7 +99,11 @@ Json options_json(const MakeCommand& command) {
     json["with"] =
         json_list(command.request.more_sources,
                   [](const std::filesystem::path& file) -> Json { return file.string(); });
+    json["normal_bits"] = asset.normal_bits;
     json["loss"] = command.request.measures_loss;
+    json["views"] = json_list(command.request.more_views, [](const glm::vec3& view) -> Json {
+        return {view.x, view.y, view.z};
+    });
     json["max_error"] = or_null(command.request.limits.normals.degrees);
     json["max_error_kind"] = enum_name(command.request.limits.normals.statistic());
     json["max_picture_error"] = or_null(command.request.limits.flip);
@@ -141,7 +146,10 @@ std::string repeating_line(const MakeCommand& command, const Job& job) {
     for (const std::filesystem::path& file : command.request.more_sources)
         line += " --with " + quoted(file);
     if (!asset.layers.empty()) line += " --layers " + names_of_layers(asset.layers);
+    if (asset.normal_bits != 8) line += fmt::format(" --normal-bits {}", asset.normal_bits);
     if (command.request.measures_loss) line += " --loss";
+    for (const glm::vec3& view : command.request.more_views)
+        line += " --view " + view_text(view);
     const LossLimits& limits = command.request.limits;
     if (limits.normals.degrees) line += fmt::format(" --max-error {}", *limits.normals.degrees);
     if (limits.normals.kind)
@@ -259,6 +267,11 @@ ExitCode make(const CLI::App& app, const MakeCommand& command) {
                          "make a single asset without an output folder");
     }
     check_remeshing(app, command);
+    if (!command.request.more_views.empty() && !command.request.measures_loss &&
+        !command.request.limits.any()) {
+        throw UsageError("--view: has no effect, because no loss is measured",
+                         "add --loss or a limit of it");
+    }
     set_thread_limit(command.general.threads);
     if (command.explain) return explain(command, list);
     check_outputs(command, list);
@@ -373,6 +386,11 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
                "Keep the texture coordinates of the model instead of computing new ones. They must "
                "not overlap.")
         .group(maps);
+    add_choice<int>(app, "--normal-bits", {{"8", 8}, {"16", 16}},
+                    "The bits of the normal map. Few programs read more than 8 from glTF files. "
+                    "Default: 8, and 16 if --max-error needs them.",
+                    [&asset](int bits) { asset.normal_bits = bits; })
+        .group(maps);
     add_value(app, "--samples", "N",
               "The rays of a texel for normals and colors: 1, 4, 16 or 64. Default: 1.",
               [&asset](const std::string& subject, const std::string& text) {
@@ -410,18 +428,20 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
     add_switch(
         app, "--loss", command.request.measures_loss,
         "Measure what was lost: differences of pictures (FLIP) with three lights, degrees "
-        "between normals and pixels between silhouettes, in 12 views. Needs OpenGL, also "
-        "without a GPU. With --report NAME.html, the report is a page with pictures of the "
+        "between normals and pixels between silhouettes, in 12 views, after each stage, and "
+        "distances between the surfaces. Needs OpenGL, also without a GPU. With --report "
+        "NAME.html, the report is a page with pictures of the "
         "source and the asset, also without --loss; for a folder, an index with a picture of "
         "each asset, worst first.")
         .group(output);
+    add_view_option(app, command.request.more_views).group(output);
     LossLimits& limits = command.request.limits;
     add_error_bound(app, limits.normals, output,
                     "The largest angle between normals of the source and the asset, which 99 % of "
                     "the pixels of --loss do not exceed. The asset gets more triangles, up to "
-                    "those of the source, or larger maps, up to 8192, from --triangles and --size "
-                    "on, in at most 6 attempts. If the limit does not hold then, nothing is "
-                    "written.");
+                    "those of the source, larger maps, up to 8192, or normals of 16 bits, from "
+                    "--triangles and --size on, in at most 6 attempts. If the limit does not hold "
+                    "then, nothing is written.");
     add_number(app, "--max-picture-error", "FLIP", limits.flip, {1e-4, 1.0, ""},
                "The same for the largest mean FLIP of the three lights. Both limits can be given.")
         .group(output);

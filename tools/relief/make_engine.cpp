@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
-#include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/map_description.h"
@@ -34,13 +36,17 @@ std::filesystem::path layer_file(Engine engine, const std::filesystem::path& out
 }
 
 /// Returns the normal map with the direction of green that an engine reads. The code of zero is
-/// 127.5, so that the opposite of each code exists.
+/// half of the largest code, so that the opposite of each code exists.
 Image normal_map_for(const Image& map, Green green) {
     Image result = map;
     if (green == Green::up) return result;
-    const std::span<std::uint8_t> samples = result.as<std::uint8_t>();
-    for (std::size_t i = 1; i < samples.size(); i += 3)
-        samples[i] = static_cast<std::uint8_t>(255 - samples[i]);
+    std::visit(
+        [](auto& samples) {
+            using Sample = typename std::decay_t<decltype(samples)>::value_type;
+            for (std::size_t i = 1; i < samples.size(); i += 3)
+                samples[i] = static_cast<Sample>(std::numeric_limits<Sample>::max() - samples[i]);
+        },
+        result.samples);
     return result;
 }
 
@@ -129,7 +135,7 @@ std::vector<std::filesystem::path> write_map_files(Engine engine,
     const bool has_files = has_map_files(engine);
     if (has_files) {
         NormalMapFormat format;
-        format.bits = 8;
+        format.bits = asset.normal_map.bits();
         format.green = rules.green;
         write(map_file(output, rules.normal_name), normal_map_for(asset.normal_map, rules.green),
               normal_map_metadata(format));

@@ -112,8 +112,8 @@ Json index_facts(const MadeAsset& made) {
                        return Json(to_string(finding));
                    })}};
     if (made.loss) {
-        facts["flip"] = made.loss->max_picture_mean();
-        facts["degrees"] = made.loss->normals.mean;
+        facts["flip"] = made.loss->fidelity.max_picture_mean();
+        facts["degrees"] = made.loss->fidelity.normals.mean;
     }
     return facts;
 }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <numbers>
@@ -18,7 +19,7 @@
 #include "file_replacement.h"
 #include "make_engine.h"
 #include "make_loss.h"
-#include "make_pictures.h"
+#include "make_loss_meter.h"
 #include "make_remesh.h"
 #include "make_stages.h"
 #include "relief/mesh/execution.h"
@@ -120,8 +121,9 @@ std::vector<std::string> map_lines(const MadeAsset& made) {
     const make::Asset& asset = made.asset;
     const BakeResult& bake = asset.bake;
     std::vector<std::string> lines = {fmt::format(
-        "normals {} x {}: {} baked, {} missed; the source is {:.3g} to {:.3g} outside",
-        asset.normal_map.width, asset.normal_map.height, counted(bake.texels_baked, "texel"),
+        "normals {} x {}{}: {} baked, {} missed; the source is {:.3g} to {:.3g} outside",
+        asset.normal_map.width, asset.normal_map.height,
+        asset.normal_map.bits() == 8 ? "" : ", 16 bits", counted(bake.texels_baked, "texel"),
         bake.texels_missed, bake.min_height, bake.max_height)};
     for (const make::AssetMap& map : make::maps_of(asset)) {
         if (map.name == "normal") continue;
@@ -140,8 +142,10 @@ std::vector<std::string> map_lines(const MadeAsset& made) {
 Json maps_json(const make::Asset& asset) {
     Json maps = Json::array();
     for (const make::AssetMap& map : make::maps_of(asset)) {
-        Json json = {
-            {"content", map.content}, {"width", map.image->width}, {"height", map.image->height}};
+        Json json = {{"content", map.content},
+                     {"width", map.image->width},
+                     {"height", map.image->height},
+                     {"bits", map.image->bits()}};
         const auto range = map.metadata.find("relief:range");
         if (range != map.metadata.end()) json["range"] = std::stod(range->second);
         maps.push_back(std::move(json));
@@ -210,9 +214,13 @@ class FileMaker {
     void run_stage(std::string_view name, const std::function<void()>& work);
     void read();
     void make_once();
+    [[nodiscard]] bool measures_loss() const {
+        return request_.measures_loss || request_.limits.any();
+    }
     void measure_loss();
+    void measure_stages();
     [[nodiscard]] bool holds_limits();
-    void grow(Growth growth);
+    void grow(const GrowthStep& step);
 
     const MakeRequest& request_;
     const Job& job_;
@@ -220,6 +228,7 @@ class FileMaker {
     make::AssetOptions options_;
     make::AssetSource source_;
     std::unique_ptr<LossMeter> meter_;              ///< Created when it is needed.
+    bool only_codes_differ_ = false;                ///< The asset is that of the last attempt.
     std::vector<std::filesystem::path> map_files_;  ///< Beside the asset.
     MadeAsset made_;
 };
@@ -253,7 +262,12 @@ void FileMaker::make_once() {
             made_.files.push_back(kept->write_mesh(stage, mesh, source_.origin, of_kept));
         };
     }
-    made_.asset = about(job_.input, [&] { return make::make_asset(source_, options_); });
+    if (only_codes_differ_ && !kept) {
+        // The other stages would compute the same again.
+        made_.asset.normal_map = *std::exchange(made_.asset.baked_normals, std::nullopt);
+    } else {
+        made_.asset = about(job_.input, [&] { return make::make_asset(source_, options_); });
+    }
     for (const make::StageReport& stage : made_.asset.reports) {
         made_.findings.add(stage.stage, stage.report, stage.stage == "bake" ? options_.size.x : 0);
     }
@@ -274,7 +288,7 @@ void FileMaker::make_once() {
         const Report problems = make::verify_asset(job_.output, made_.asset);
         made_.findings.add("verify", problems);
     });
-    if (request_.measures_loss || request_.limits.any()) run_stage("loss", [&] { measure_loss(); });
+    if (measures_loss()) run_stage("loss", [&] { measure_loss(); });
 }
 
 /// Measures what was lost, or reports why that is not possible.
@@ -282,8 +296,10 @@ void FileMaker::measure_loss() {
     Report report;
     try {
         if (!meter_) {
+            shade::FidelityOptions pictures;
+            pictures.more_views = request_.more_views;
             meter_ = std::make_unique<LossMeter>(sources_of(request_, job_), job_.output,
-                                                 options_.crease_angle);
+                                                 options_.crease_angle, pictures);
         }
         made_.loss = meter_->measure(job_.output, report);
     } catch (const shade::GpuError& error) {
@@ -296,35 +312,66 @@ void FileMaker::measure_loss() {
     made_.findings.add("loss", report);
 }
 
+/// Measures the stages of an asset that is not made again.
+void FileMaker::measure_stages() {
+    if (!made_.loss) return;
+    run_stage("loss", [&] {
+        made_.loss->stages = meter_->measure_stages(job_.output, made_.asset, *made_.loss);
+    });
+    made_.asset.baked_normals.reset();
+}
+
 /// Notes what was lost. \throws FileError if a limit does not hold and nothing can grow
 bool FileMaker::holds_limits() {
     if (!request_.limits.any()) return true;
     std::vector<LimitAttempt>& attempts = made_.attempts;
     const std::size_t triangles = std::min(options_.triangles, made_.asset.source_triangles);
-    attempts.push_back(attempt_of(*made_.loss, request_.limits, triangles, options_.size));
-    if (!attempts.back().exceeded) return true;
-    attempts.back().next = next_growth(attempts, made_.asset.source_triangles);
-    if (!attempts.back().next) throw FileError(job_.input, limits_error(request_.limits, attempts));
+    const shade::Fidelity& loss = made_.loss->fidelity;
+    LimitAttempt& last = attempts.emplace_back(
+        attempt_of(loss, request_.limits, triangles, options_.size, options_.normal_bits));
+    if (!last.exceeded) return true;
+    if (may_be_codes(last, request_.limits)) {
+        run_stage("loss", [&] {
+            note_baked(
+                last, request_.limits, loss.sampled.normals,
+                meter_->measure_with_normals(job_.output, *made_.asset.baked_normals).normals);
+        });
+    }
+    last.next = next_growth(attempts, request_.limits, made_.asset.source_triangles);
+    if (!last.next) throw FileError(job_.input, limits_error(request_.limits, attempts));
     return false;
 }
 
-void FileMaker::grow(Growth growth) {
-    if (growth == Growth::size)
-        options_.size *= 2;
-    else
-        options_.triangles = std::min(2 * options_.triangles, made_.asset.source_triangles);
+void FileMaker::grow(const GrowthStep& step) {
+    only_codes_differ_ = step.growth == Growth::bits;
+    switch (step.growth) {
+        case Growth::triangles:
+            options_.triangles =
+                std::min(static_cast<std::size_t>(step.factor) * options_.triangles,
+                         made_.asset.source_triangles);
+            break;
+        case Growth::size:
+            options_.size *= step.factor;
+            break;
+        case Growth::bits:
+            options_.normal_bits = 16;
+            options_.keep_baked_normals = false;
+            break;
+    }
 }
 
 MadeAsset FileMaker::run() {
     options_.run_stage = [this](std::string_view name, const std::function<void()>& work) {
         run_stage(name, work);
     };
+    options_.keep_baked_normals = measures_loss() && options_.normal_bits == 8;
     run_stage("read", [&] { read(); });
     const Findings of_source = made_.findings;
     while (true) {
         relief::detail::FileSet files;  // Without commit(), it removes the files.
         make_once();
         if (holds_limits()) {
+            measure_stages();
             files.commit();
             break;
         }
@@ -407,7 +454,10 @@ Summary summary_of(const MakeRequest& request, const Job& job, const MadeAsset& 
         summary.add("limits", limit_lines(request.limits, made.attempts),
                     {{"limits", limits_json(request.limits, made.attempts)}});
     }
-    if (made.loss) summary.add("loss", loss_lines(*made.loss), {{"loss", loss_json(*made.loss)}});
+    if (made.loss) {
+        summary.add("loss", loss_lines(*made.loss, request.limits.normals.statistic()),
+                    {{"loss", loss_json(*made.loss)}});
+    }
     summary.add_findings(made.findings);
     summary.add("stages", stage_lines(made, stages), {{"stages", stages_json(made, stages)}});
     std::vector<std::string> written;

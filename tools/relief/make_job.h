@@ -15,8 +15,8 @@
 #include "common/summary.h"
 #include "engines.h"
 #include "make_limits.h"
+#include "make_loss.h"
 #include "relief/make/asset.h"
-#include "relief/shade/fidelity.h"
 
 namespace relief::tools {
 
@@ -25,6 +25,8 @@ struct MakeRequest {
     std::vector<std::filesystem::path> more_sources;  ///< Further files of the dense model.
     Engine engine = Engine::gltf;
     bool measures_loss = false;  ///< Also without limits.
+    /// Directions to the camera of views that are measured besides the 12.
+    std::vector<glm::vec3> more_views;
     LossLimits limits;
     /// Gets the results of all stages (make_stages.h).
     std::optional<std::filesystem::path> stages_folder;
@@ -62,7 +64,7 @@ struct MadeAsset {
     SourceFacts source;
     make::Asset asset;
     std::vector<make::AssetLevel> levels;
-    std::optional<shade::Fidelity> loss;
+    std::optional<AssetLoss> loss;
     /// With limits: the assets of the search. The last one is this asset.
     std::vector<LimitAttempt> attempts;
     std::vector<std::filesystem::path> inputs;  ///< Every file that was read or searched.
@@ -88,7 +90,8 @@ std::vector<std::filesystem::path> outputs_of(const MakeRequest& request,
 
 /// Reads, makes, writes and verifies an asset. The stages are those of make::stages_of() between
 /// "read", and "write", "verify" and, if requested, "loss". All files are replaced together at the
-/// end. With limits, the stages run again with more triangles or larger maps until the limits hold.
+/// end. With limits, the stages run again with more triangles, larger maps or normals of 16 bits
+/// until the limits hold.
 /// \throws FileError, also if a limit cannot be held; UsageError. Then no file is changed
 MadeAsset make_file(const MakeRequest& request, const Job& job, Stages& stages);
 

@@ -10,6 +10,7 @@
 
 #include "common/html.h"
 #include "common/text.h"
+#include "common/view_direction.h"
 #include "file_replacement.h"
 #include "make_loss.h"
 #include "make_pictures.h"
@@ -32,6 +33,7 @@ class PageWriter {
     [[nodiscard]] std::string findings() const;
     [[nodiscard]] std::string stages() const;
     [[nodiscard]] std::string loss() const;
+    [[nodiscard]] std::string worst_pictures() const;
     [[nodiscard]] std::string levels() const;
     [[nodiscard]] std::string maps() const;
 
@@ -128,28 +130,123 @@ std::string PageWriter::stages() const {
         rows);
 }
 
+std::string figure_cell(const std::optional<double>& value) {
+    return value ? fmt::format("<td>{:.4f}</td>", *value) : "<td>–</td>";
+}
+
+std::string heads(const std::vector<std::string>& names) {
+    std::string html;
+    for (const std::string& name : names)
+        html += "<th scope=\"col\">" + html_escaped(name) + "</th>";
+    return html;
+}
+
+/// The figures of all views.
+std::string loss_table(const shade::Fidelity& loss, ErrorKind limited) {
+    const bool has_rms = limited == ErrorKind::rms;
+    std::vector<std::string> names = {"difference", "mean"};
+    if (has_rms) names.emplace_back("rms");
+    for (const char* name : {"95 %", "99 %", "largest", "worst view", "noise floor"})
+        names.emplace_back(name);
+    std::string rows;
+    for (const LossRow& row : loss_rows(loss, limited)) {
+        rows +=
+            fmt::format("<tr><th scope=\"row\">{}</th>{}{}{}{}{}<td>{:.4f} (view {})</td>{}</tr>\n",
+                        row.name, figure_cell(row.mean), has_rms ? figure_cell(row.rms) : "",
+                        figure_cell(row.p95), figure_cell(row.p99), figure_cell(row.max), row.worst,
+                        row.worst_view, figure_cell(row.floor));
+    }
+    return table(heads(names), rows);
+}
+
+/// The loss after each stage.
+std::string stage_table(const AssetLoss& loss) {
+    std::string rows;
+    const auto add = [&](const std::string& name, const std::string& triangles,
+                         const shade::SampledFidelity& of, const std::optional<double>& p99) {
+        rows += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td>", name, triangles);
+        for (const double flip : of.flip)
+            rows += figure_cell(flip);
+        rows += figure_cell(of.normals.mean) + figure_cell(p99) +
+                figure_cell(of.silhouette_pixels) + "</tr>\n";
+    };
+    for (const LossStage& stage : loss.stages)
+        add(stage.name, std::to_string(stage.triangles), stage.loss, stage.loss.normals.p99);
+    add("noise floor", "–", sampled_floor(loss.fidelity), {});
+    return fmt::format(
+        "<h3>After each stage</h3>\n<p>Against the source, in {}. The differences of stages do not "
+        "add up. Decimated: without maps. Baked: normals before they are coded. Coded: the "
+        "asset.</p>\n{}",
+        sampled_views_text(loss.fidelity),
+        table(heads({"after", "triangles", "FLIP, studio", "FLIP, grazing", "FLIP, base-color",
+                     "degrees", "degrees, 99 %", "silhouettes, pixels"}),
+              rows));
+}
+
+std::string distance_table(const AssetLoss& loss) {
+    std::string rows;
+    for (const DistanceRow& row : distance_rows(loss)) {
+        rows += fmt::format("<tr><th scope=\"row\">{}</th>", row.name);
+        for (const double value : {row.mean, row.p95, row.max})
+            rows += "<td>" + distance_text(value, loss.diagonal) + "</td>";
+        rows += "</tr>\n";
+    }
+    return "<h3>Distances</h3>\n<p>In units of the model, and in percent of the diagonal of its "
+           "box.</p>\n" +
+           table(heads({"from", "mean", "95 %", "largest"}), rows);
+}
+
+/// The views; the largest difference of pictures is first.
+std::string view_table(const shade::Fidelity& loss) {
+    std::string rows;
+    for (const std::size_t view : shade::worst_views_first(loss)) {
+        const shade::ViewLoss& one = loss.views[view];
+        rows += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td>", view, view_text(one.from));
+        for (const double figure :
+             {one.flip[0], one.flip[1], one.flip[2], one.degrees, one.silhouette_pixels})
+            rows += figure_cell(figure);
+        rows += "</tr>\n";
+    }
+    return "<details><summary>All views, the worst first</summary>\n" +
+           table(heads({"view", "azimuth,elevation", "FLIP, studio", "FLIP, grazing",
+                        "FLIP, base-color", "degrees", "silhouettes, pixels"}),
+                 rows) +
+           "</details>\n";
+}
+
+std::string PageWriter::worst_pictures() const {
+    const shade::Fidelity& loss = made_.loss->fidelity;
+    std::string html;
+    for (std::size_t i = 0; i < shade::fidelity_light_count; ++i) {
+        const shade::PictureLoss& picture = loss.pictures[i];
+        if (picture.source.empty()) continue;
+        const std::string light = enum_name(static_cast<shade::FidelityLight>(i));
+        const auto add = [&](const Image& image, const std::string& name) {
+            html += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n",
+                                img(image, fmt::format("{}, {}", name, light)),
+                                fmt::format("{}, {}, view {}", name, light, picture.worst.view));
+        };
+        add(picture.source, "source");
+        add(picture.result, "asset");
+        add(false_color_image(picture.difference, 1.0), "FLIP");
+    }
+    return "<h3>Worst view of each light</h3>\n<div class=\"pictures errors\">\n" + html +
+           "</div>\n";
+}
+
 std::string PageWriter::loss() const {
     if (!made_.loss) return "";
-    std::string rows;
-    for (const LossRow& row : loss_rows(*made_.loss)) {
-        rows += fmt::format(
-            "<tr><th scope=\"row\">{}</th><td>{:.4f}</td><td>{}</td><td>{:.4f} (view {})</td>"
-            "<td>{:.4f}</td></tr>\n",
-            row.name, row.mean, row.p95 ? fmt::format("{:.4f}", *row.p95) : "–", row.worst,
-            row.worst_view, row.floor);
-    }
+    const shade::Fidelity& loss = made_.loss->fidelity;
     std::string attempts;
     for (const std::string& line : limit_lines(request_.limits, made_.attempts))
         attempts += "<li>" + html_escaped(line) + "</li>\n";
     if (!attempts.empty()) attempts = "<p>Attempts:</p>\n<ol>\n" + attempts + "</ol>\n";
     return fmt::format(
         "<h2>What was lost</h2>\n<p>The source against the asset in {} views, {:.0f} pixels "
-        "across.</p>\n{}{}",
-        made_.loss->views.size(), made_.loss->pixels_across,
-        table("<th scope=\"col\">difference</th><th scope=\"col\">mean</th><th scope=\"col\">95 "
-              "%</th><th scope=\"col\">worst view</th><th scope=\"col\">noise floor</th>",
-              rows),
-        attempts);
+        "across.</p>\n{}{}{}{}{}{}",
+        loss.views.size(), loss.pixels_across,
+        loss_table(loss, request_.limits.normals.statistic()), attempts, stage_table(*made_.loss),
+        distance_table(*made_.loss), view_table(loss), worst_pictures());
 }
 
 std::string PageWriter::levels() const {
@@ -184,7 +281,8 @@ std::string PageWriter::maps() const {
     add(draw_charts(asset, glm::max(size / factor, glm::ivec2(1))), charts);
     for (const make::AssetMap& map : make::maps_of(asset)) {
         add(*map.image,
-            fmt::format("{}, {} x {}", map.content, map.image->width, map.image->height));
+            fmt::format("{}, {} x {}{}", map.content, map.image->width, map.image->height,
+                        map.image->bits() == 8 ? "" : fmt::format(", {} bits", map.image->bits())));
     }
     return html;
 }

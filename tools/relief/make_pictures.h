@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Pictures of an asset and its source for the report page. OpenGL is loaded only by the
-/// constructors of AssetScenes, AssetDrawer and LossMeter.
+/// constructors of AssetScenes and AssetDrawer.
 /// Tests: tests/make/make_page_test.cpp.
 #pragma once
 
@@ -14,7 +14,6 @@
 
 #include "relief/make/asset.h"
 #include "relief/mesh/image.h"
-#include "relief/shade/fidelity.h"
 
 namespace relief::tools {
 
@@ -63,30 +62,12 @@ class AssetDrawer {
     std::unique_ptr<Implementation> implementation_;
 };
 
-/// Measures what assets lost against one source, whose pictures are drawn once.
-class LossMeter {
-  public:
-    /// \param sources, crease_angle  as for AssetScenes
-    /// \param beside  a file in the folder for a temporary file
-    /// \throws Error if nothing can be drawn
-    LossMeter(std::span<const std::filesystem::path> sources, const std::filesystem::path& beside,
-              std::optional<double> crease_angle);
-    ~LossMeter();
-    LossMeter(const LossMeter&) = delete;
-    LossMeter& operator=(const LossMeter&) = delete;
-
-    /// \param asset  the written file
-    shade::Fidelity measure(const std::filesystem::path& asset, Report& report);
-
-  private:
-    struct Implementation;
-    std::unique_ptr<Implementation> implementation_;
-};
-
 /// Draws the charts of an asset.
 Image draw_charts(const make::Asset& made, const glm::ivec2& size);
 
-/// Returns a picture of at most `max_side` pixels along a side: each is the mean of a square.
+/// Returns a picture of 8 bits with at most `max_side` pixels along a side: each is the mean of a
+/// square.
+/// \param image  of 8 or 16 bits
 Image reduced(const Image& image, int max_side);
 
 }  // namespace relief::tools

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// A source and its asset as scenes with the same model of shading.
+/// Tests: tests/make/make_page_test.cpp, make_loss_test.cpp.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+
+#include "relief/shade/scene.h"
+
+namespace relief::tools {
+
+/// Loads the source with the materials that glTF gives it, so that both scenes have the same model
+/// of shading.
+///
+/// \param files  of the dense model, at least one
+/// \param beside  a file in the folder for a temporary file
+/// \param crease_angle  for a source without normals
+/// \throws FileError, InvalidInput
+shade::Scene source_scene(std::span<const std::filesystem::path> files,
+                          const std::filesystem::path& beside, std::optional<double> crease_angle);
+
+/// Loads a written asset. \throws FileError
+shade::Scene asset_scene(const std::filesystem::path& file);
+
+}  // namespace relief::tools
