@@ -401,6 +401,7 @@ py::dict to_dict(const DistanceStats& stats) {
     py::dict result;
     result["mean"] = stats.mean;
     result["rms"] = stats.rms;
+    result["p95"] = stats.p95;
     result["max"] = stats.max;
     result["mean_degrees"] = stats.mean_degrees;
     result["max_degrees"] = stats.max_degrees;
@@ -743,12 +744,12 @@ void add_mesh_functions(py::module_& module) {
         "All levels have the texture coordinates of the mesh, so that one normal map serves\n"
         "all. The result is a list of meshes without the input.\n\n"
         "Raises InvalidInput for options that are out of range.");
-    module.def(
-        "surface_distance", &py_surface_distance, arg("a"), arg("b"),
-        "Measure the distances between two surfaces and the angles of their normals.\n\n"
-        "The result is (from_a, from_b): dictionaries with the keys of the reports of\n"
-        "`relief-mesh decimate`, of the points of `a` from `b` and of those of `b` from `a`.\n\n"
-        "Raises InvalidInput if a mesh has no triangle.");
+    module.def("surface_distance", &py_surface_distance, arg("a"), arg("b"),
+               "Measure the distances between two surfaces and the angles of their normals.\n\n"
+               "The result is (from_a, from_b): dictionaries with the keys of the reports of\n"
+               "`relief-mesh decimate` and `p95`, of the points of `a` from `b` and of those of "
+               "`b` from `a`.\n\n"
+               "Raises InvalidInput if a mesh has no triangle.");
     module.def("subdivide", &py_subdivided, arg("mesh"), arg("levels"), py::kw_only(),
                arg("normals") = "keep", arg("report") = py::none(),
                "Apply Loop subdivision: each level splits every triangle into four.\n\n"

@@ -54,6 +54,8 @@ from ._relief import (
     normal_mip_levels,
     read_image,
     read_mesh,
+    remesh,
+    repair,
     resize_normals,
     scale_slopes,
     set_thread_limit,
@@ -80,9 +82,9 @@ __all__ = [
     "BakeMismatch", "Baked", "Cancelled", "Error", "Execution", "FileError", "Finding", "GpuError", "InvalidInput",
     "Mesh", "Scene", "ToolError", "Unwrapped", "__version__", "accuracy", "bake", "blend_normals", "bump", "bump_options",
     "check_mesh", "check_normal_map", "compare_images", "compare_meshes", "compare_normals", "convert_space",
-    "corner_normals", "corner_tangents", "decimate", "decode_normals", "encode_normals", "flip_green", "heights",
+    "corner_normals", "corner_tangents", "decimate", "decode_normals", "encode_normals", "fidelity", "flip_green", "heights",
     "levels_of_detail", "make", "mean_curvatures", "measure_texcoords", "normal_mip_levels", "read_image", "read_mesh",
-    "resize_normals", "run", "scale_slopes", "set_thread_limit", "slopes", "split_vertices", "subdivide", "surface_distance",
+    "remesh", "repair", "resize_normals", "run", "scale_slopes", "set_thread_limit", "slopes", "split_vertices", "subdivide", "surface_distance",
     "triangle_normals", "unwrap", "vertex_normals", "vertex_tangents", "with_frames", "write_image", "write_mesh",
     "write_texture",
 ]
@@ -309,13 +311,43 @@ def make(
     size: int = 2048,
     lods: int = 0,
     engine: Literal["gltf", "godot", "unity", "unreal"] = "gltf",
+    loss: bool = False,
+    max_error: float | None = None,
+    max_picture_error: float | None = None,
 ) -> dict[str, Any]:
     """Make an asset with maps from the file of a dense model, as `relief make` does (docs/make.md).
 
     It runs in a process of its own. The result is the report of `relief make --report`: the stages, the numbers of
-    triangles, the maps and the findings. Raises ToolError if the tool fails; then no file is changed.
+    triangles, the maps and the findings, with `loss` what was lost, and with limits of it (in degrees, and of FLIP)
+    the attempts that held them. Raises ToolError if the tool fails; then no file is changed.
     """
+    options = ["--loss"] if loss else []
+    for option, limit in (("--max-error", max_error), ("--max-picture-error", max_picture_error)):
+        if limit is not None:
+            options += [option, str(limit)]
     report: dict[str, Any] = run(
         "relief", "make", source, "-o", output, "--triangles", str(triangles), "--size", str(size),
-        "--lods", str(lods), "--for", engine, report=True)
+        "--lods", str(lods), "--for", engine, *options, report=True)
+    return report
+
+
+@_arguments.checks_keywords
+def fidelity(
+    source: str | os.PathLike[str],
+    *results: str | os.PathLike[str],
+    size: int = 256,
+    samples: Literal[1, 4, 9, 16] = 4,
+    views: int = 12,
+    more_views: Sequence[tuple[float, float]] = (),
+) -> dict[str, Any]:
+    """Measure how much the files of models differ from their source, as `relief-accuracy fidelity` does.
+
+    It runs in a process of its own. `more_views` has directions to the camera, (azimuth, elevation) in degrees. The
+    result is the report that docs/fidelity.md describes: "stages" has one dictionary for each result, with pictures,
+    normals, silhouettes, distances and views. Raises ToolError if the tool fails.
+    """
+    options = ["--size", str(size), "--samples", str(samples), "--views", str(views)]
+    for azimuth, elevation in more_views:
+        options += ["--view", f"{azimuth},{elevation}"]
+    report: dict[str, Any] = run("relief-accuracy", "fidelity", source, *results, *options, report=True)
     return report

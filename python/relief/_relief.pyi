@@ -187,6 +187,20 @@ def levels_of_detail(
     report: Report | None = None,
 ) -> list[Mesh]: ...
 def surface_distance(a: Mesh, b: Mesh) -> tuple[dict[str, float], dict[str, float]]: ...
+def repair(
+    mesh: Mesh,
+    *,
+    weld: float | None = 0.0,
+    keep_non_finite: bool = False,
+    keep_degenerate: bool = False,
+    keep_duplicates: bool = False,
+    two_sided: Literal["keep", "single", "remove"] = "keep",
+    drop_parts: float = 0.0,
+    orient: bool = True,
+    separate: bool = True,
+    report: Report | None = None,
+) -> tuple[Mesh, Indices]: ...
+def remesh(mesh: Mesh, *, resolution: int = 128, shell: bool = False, report: Report | None = None) -> Mesh: ...
 def subdivide(mesh: Mesh, levels: int, *, normals: NormalMode = "keep", report: Report | None = None) -> Mesh: ...
 def check_mesh(mesh: Mesh, *, for_baking: bool = False, for_tangents: bool = True) -> dict[str, Any]: ...
 def compare_meshes(

@@ -108,6 +108,7 @@ class MeshTools(CommandLineCase):
         from_a, from_b = relief.surface_distance(mesh, coarse)
         report = relief.run("relief-mesh", "decimate", str(DATA / "vase.obj"), str(out), "--triangles", "1000", "--measure", "full",
                             report=True)
+        self.assertTrue(from_a["mean"] < from_a["p95"] <= from_a["max"])
         for key in ("mean", "rms", "max", "mean_degrees", "max_degrees"):
             self.assertEqual(from_a[key], report["distance"]["of_input"][key], key)
             self.assertEqual(from_b[key], report["distance"]["of_output"][key], key)
@@ -121,6 +122,29 @@ class MeshTools(CommandLineCase):
         fine, stored = relief.subdivide(mesh, 2), relief.read_mesh(out)
         self.assert_equal_meshes(fine, stored)
         numpy.testing.assert_allclose(fine.texcoords, stored.texcoords, atol=6e-8)  # PLY stores 1 - v.
+
+    def test_repair_and_remesh(self):
+        mesh = relief.read_mesh(DATA / "vase.obj")
+        out = self.folder / "out.ply"
+        # Doubled and reversed triangles.
+        faulty = relief.Mesh(mesh.positions, numpy.concatenate(
+            [mesh.triangles[:, ::-1], mesh.triangles[:50, ::-1]]))
+        relief.write_mesh(self.folder / "faulty.ply", faulty)
+        self.run_tool("relief-mesh", "repair", self.folder / "faulty.ply", out, "--two-sided", "single")
+        report = []
+        repaired, source = relief.repair(faulty, two_sided="single", report=report)
+        self.assert_equal_meshes(repaired, relief.read_mesh(out))
+        self.assertEqual(len(source), len(repaired.positions))
+        self.assertEqual(len(repaired.triangles), len(relief.repair(mesh)[0].triangles))
+        self.assertIn(50, [finding["count"] for finding in report])
+        kept, _ = relief.repair(faulty, weld=None, keep_duplicates=True, orient=False, separate=False)
+        self.assertEqual(len(kept.triangles), len(faulty.triangles))
+        with self.assertRaisesRegex(relief.InvalidInput, "two_sided: 'both' is not one of keep, single, remove"):
+            relief.repair(mesh, two_sided="both")
+        self.run_tool("relief-mesh", "remesh", DATA / "vase.obj", out, "--resolution", "24", "--shell", "--normals", "keep")
+        self.assert_equal_meshes(relief.remesh(mesh, resolution=24, shell=True), relief.read_mesh(out))
+        with self.assertRaises(relief.InvalidInput):
+            relief.remesh(mesh, resolution=4)
 
     def test_check(self):
         out = self.folder / "vase.glb"
@@ -441,6 +465,16 @@ class Assets(unittest.TestCase):
             self.assertEqual(len(report["levels"]), 1)
             with self.assertRaises(relief.ToolError):
                 relief.make(pathlib.Path(folder) / "none.ply", output)
+
+    def test_fidelity(self):
+        report = relief.fidelity(DATA / "vase.obj", DATA / "vase.obj", DATA / "urn-low.obj", size=32, samples=1, views=1,
+                                 more_views=[(30.0, 20.0)])
+        equal, other = report["stages"]
+        self.assertEqual(equal["pictures"]["studio"]["mean"], 0.0)
+        self.assertGreater(other["pictures"]["studio"]["mean"], 0.05)
+        self.assertEqual(len(other["views"]), 2)
+        with self.assertRaises(relief.ToolError):
+            relief.fidelity(DATA / "vase.obj")
 
 
 class Experiments(unittest.TestCase):
