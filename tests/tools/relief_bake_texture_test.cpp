@@ -213,6 +213,29 @@ TEST(ConvertToTexture, EnginesSetTheDirectionOfGreen) {
     EXPECT_LT(up_image.as<std::uint16_t>()[y_of_fourth_row], 30000);
 }
 
+TEST(ConvertToTexture, LargeLevelsAreMeasuredInSamplesUnlessAllIsRequested) {
+    const Workplace workplace;
+    write_waves(workplace, "small.png");
+    const auto levels_of = [&](const std::string& options) {
+        run_texture(workplace,
+                    "small.png out/m.ktx2 --mips --resize 400x400 --report out/r.json " + options);
+        return json::parse(workplace.read("out/r.json"))["levels"];
+    };
+    const json quick = levels_of("");
+    const std::string bytes = workplace.read("out/m.ktx2");
+    const json full = levels_of("--measure full");
+    EXPECT_EQ(workplace.read("out/m.ktx2"), bytes);
+    const json none = levels_of("--measure none");
+    EXPECT_EQ(workplace.read("out/m.ktx2"), bytes);
+    const json sampled = quick[0]["error"];
+    EXPECT_NEAR(sampled["mean"], full[0]["error"]["mean"], sampled["mean_margin"].get<double>());
+    EXPECT_LE(sampled["max"].get<double>(), full[0]["error"]["max"].get<double>());
+    EXPECT_GT(sampled["share_above_max"].get<double>(), 0.0);
+    EXPECT_FALSE(full[0]["error"].contains("mean_margin"));
+    EXPECT_EQ(quick[1], full[1]);  // 200 x 200 texels are measured in full.
+    EXPECT_FALSE(none[0].contains("error"));
+}
+
 TEST(ConvertToTexture, RoughnessIsWrittenWithAllLevels) {
     const Workplace workplace;
     write_waves(workplace, "map.png");
@@ -258,6 +281,8 @@ TEST(ConvertToTexture, Refusals) {
           "--max-error-kind: has no effect without an output file .ktx2 or .dds"},
          {"relief-bake convert map.png out/m.ktx2 --max-error-kind max", 2,
           "--max-error-kind: has no effect without --max-error"},
+         {"relief-bake convert map.png out/m.png --measure none", 2,
+          "--measure: has no effect without an output file .ktx2 or .dds"},
          {"relief-bake convert map.png out/m.dds --zstd 3", 2, "--zstd: compresses .ktx2 files"},
          {"relief-bake convert map.png out/m.ktx2 --bits 8", 2,
           "--bits, --half: --format sets the bits of textures"},

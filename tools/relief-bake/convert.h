@@ -14,9 +14,11 @@
 
 #include "commands.h"
 #include "common/error_bound.h"
+#include "common/measuring.h"
 #include "common/normal_map_input.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/frames.h"
+#include "relief/mesh/map_texture.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/statistics.h"
 #include "relief/mesh/texture_file.h"
@@ -67,6 +69,10 @@ struct TextureOptions {
     std::optional<BlockQuality> quality;
     ErrorBound bound;  ///< Of the largest level.
     std::optional<int> zstd_level;
+    std::optional<Measuring> measuring;  ///< Of the errors of all levels. Default: quick.
+
+    /// For MapTextureOptions and NormalTextureOptions.
+    [[nodiscard]] std::size_t measured_texels() const;
 };
 
 /// The options of maps that hold no normals.
@@ -118,6 +124,7 @@ struct WrittenLevel {
     std::optional<std::filesystem::path> roughness_file;
     std::optional<double> mean_roughness;
     std::optional<ErrorStats> error;  ///< Of levels in textures, in degrees.
+    std::optional<SampleConfidence> confidence{};
 };
 
 /// A format and the effort of encoding it.
@@ -169,26 +176,16 @@ FileOutcome convert_values(const Job& job, const ConvertRequest& request, MapKin
 void check_texture_options(const CLI::App& app, const ConvertRequest& request,
                            const std::filesystem::path& output);
 
-/// A level of a texture, with the angles between its decoded normals and the exact ones.
-struct EncodedLevel {
-    std::vector<std::byte> bytes;
-    ErrorStats error;
-};
-
 /// Chooses the encoding for --max-error, or returns the given one.
 /// \throws UsageError if no encoding has so small an error
 TextureEncoding choose_encoding(const TextureOptions& options, const Image& normals);
-
-/// \param normals  three float channels, y as it is stored
-/// \throws UsageError if there is alpha, but the format stores none
-EncodedLevel encode_level(const Image& normals, const std::optional<Image>& alpha,
-                          const TextureEncoding& encoding, Report& report);
 
 /// The angles between the normals of a mip level and the exact ones, in degrees.
 struct LevelError {
     int width = 0;
     int height = 0;
     ErrorStats error;
+    std::optional<SampleConfidence> confidence{};
 };
 
 /// "level 1, 128 x 128: error 0.152 degrees (99 %: 0.410, maximum: 0.900)"

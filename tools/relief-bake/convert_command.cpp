@@ -11,6 +11,7 @@
 #include "common/summary.h"
 #include "convert.h"
 #include "file_replacement.h"
+#include "map_textures.h"
 
 namespace relief::tools {
 
@@ -44,7 +45,8 @@ std::vector<std::string> level_lines(const MapConversion& conversion) {
     for (const WrittenLevel& level : conversion.levels) {
         if (level.error) {
             std::string line = (lines.empty() ? file_and_size(level.file) + ", " : "") +
-                               level_text(lines.size(), {level.width, level.height, *level.error});
+                               level_text(lines.size(), {level.width, level.height, *level.error,
+                                                         level.confidence});
             if (level.mean_roughness)
                 line += fmt::format(", roughness {:.4f}", *level.mean_roughness);
             lines.push_back(line);
@@ -75,6 +77,7 @@ Json json_of(const WrittenLevel& level) {
         json["error"] = {
             {"mean", level.error->mean}, {"p99", level.error->p99}, {"max", level.error->max}};
     }
+    if (level.confidence) add_confidence(json["error"], *level.confidence);
     return json;
 }
 

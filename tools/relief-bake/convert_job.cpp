@@ -20,10 +20,14 @@
 #include "relief/mesh/map_description.h"
 #include "relief/mesh/normal_map.h"
 #include "relief/mesh/normal_map_file.h"
+#include "relief/mesh/normal_texture.h"
 #include "relief/mesh/report.h"
 
 namespace relief::tools {
 namespace {
+
+/// Bands of textures are small, because their floats and those of all levels stay in the cache.
+constexpr std::size_t texels_per_band_of_textures = std::size_t{1} << 18;
 
 constexpr AxisMapping flip_green = {{{0, false}, {1, true}, {2, false}}};
 
@@ -306,7 +310,8 @@ class LevelWriter {
           stages_(stages),
           report_(report),
           result_(result) {
-        if (input.info.channels == 4 && request.keeps_alpha()) alpha_ = stated_.alpha;
+        has_alpha_ = input.info.channels == 4 && request.keeps_alpha();
+        if (has_alpha_) alpha_ = stated_.alpha;
         if (request.mips.lengths) alpha_ = AlphaContent::length;
     }
 
@@ -323,7 +328,30 @@ class LevelWriter {
             stages_.run("convert", [&] { return encode(field.normals, field.alpha); });
         field = NormalField{};  // Before writing, which needs memory itself.
         stages_.run("write", [&] { write(job_.output, codes, metadata()); });
-        result_.levels.push_back({job_.output, codes.width, codes.height, 1.0, 1.0, {}, {}, {}});
+        result_.levels.push_back(
+            {job_.output, codes.width, codes.height, 1.0, 1.0, {}, {}, {}, {}});
+    }
+
+    /// Converts the map by rows and writes it as a texture.
+    void write_texture_by_rows(const NormalMapSource& source,
+                               const NormalMapConversion& conversion) {
+        const TextureEncoding encoding{request_.texture.format.value_or(TextureFormat::bc5),
+                                       request_.texture.quality.value_or(BlockQuality::normal)};
+        check_alpha(encoding.format, has_alpha_);
+        EncodedMapFile encoded =
+            encode_normal_map_file(source, conversion, options_for(encoding), report_,
+                                   [&](double part) { stages_.show_progress("convert", part); });
+        stages_.clear_progress();
+        if (source.image == nullptr) stages_.book("read", encoded.times.read);
+        stages_.book("convert", encoded.times.convert);
+        result_.lengths = encoded.lengths;
+        write_encoded(encoding, std::move(encoded.encoded));
+    }
+
+    /// Adds the step of the levels of a texture that was written.
+    void describe_texture_levels() {
+        if (request_.mips.wanted)
+            result_.steps.push_back(describe_levels(result_.levels.size() - 1));
     }
 
     /// Converts and writes the map by rows.
@@ -339,7 +367,7 @@ class LevelWriter {
         stages_.book("write", converted.times.write);
         result_.lengths = converted.lengths;
         result_.levels.push_back(
-            {job_.output, conversion.width, conversion.height, 1.0, 1.0, {}, {}, {}});
+            {job_.output, conversion.width, conversion.height, 1.0, 1.0, {}, {}, {}, {}});
     }
 
   private:
@@ -376,6 +404,7 @@ class LevelWriter {
                              static_cast<double>(*std::min_element(all.begin(), all.end())),
                              {},
                              {},
+                             {},
                              {}};
         stages_.run("write", [&] { write(written.file, codes, metadata()); });
         if (request_.mips.roughness) write_roughness(written, level, lengths);
@@ -400,69 +429,52 @@ class LevelWriter {
     void write_texture_levels(NormalField& field) {
         const TextureEncoding encoding = stages_.run(
             "convert", [&] { return choose_encoding(request_.texture, field.normals); });
-        result_.texture = encoding;
-        GpuTexture texture;
-        texture.format = encoding.format;
-        texture.width = field.normals.width;
-        texture.height = field.normals.height;
-        if (channels_of(encoding.format) == 2) texture.swizzle = "rg01";
-        texture.metadata = texture_entries(encoding.format);
-        GpuTexture roughness = texture;
-        roughness.format = TextureFormat::bc4;
-        roughness.swizzle.clear();
-        Image lengths =
-            make_image(field.normals.width, field.normals.height, 1, 32, ColorSpace::data);
-        std::ranges::fill(lengths.as<float>(), 1.0F);
-        add_level(field.normals, field.alpha, lengths, encoding, texture, roughness);
-        if (request_.mips.wanted) {
-            std::vector<Image> levels =
-                stages_.run("convert", [&] { return normal_mip_levels(field.normals); });
-            field.normals = Image{};
-            result_.steps.push_back(describe_levels(levels.size()));
-            const std::vector<Image> alphas =
-                field.alpha ? mip_levels(*field.alpha) : std::vector<Image>{};
-            for (std::size_t i = 0; i < levels.size(); ++i) {
-                lengths = stages_.run("convert", [&] { return split_lengths(levels[i], report_); });
-                add_level(levels[i],
-                          alphas.empty() ? std::nullopt : std::optional<Image>(alphas[i]), lengths,
-                          encoding, texture, roughness);
-            }
-        }
-        const TextureWriteOptions options{request_.texture.zstd_level};
-        stages_.run("write", [&] { write_texture(job_.output, texture, options, report_); });
-        if (!request_.mips.roughness) return;
-        const std::filesystem::path file = level_file(job_.output, 0, true);
-        roughness.metadata = roughness_entries(bits_of(roughness.format));
-        stages_.run("write", [&] { write_texture(file, roughness, options, report_); });
-        for (WrittenLevel& level : result_.levels)
-            level.roughness_file = file;
+        NormalTexture encoded = stages_.run("convert", [&] {
+            check_alpha(encoding.format, field.alpha.has_value());
+            NormalTextureEncoder encoder(field.normals.width, field.normals.height,
+                                         field.alpha.has_value(), options_for(encoding));
+            encoder.add(field.normals, field.alpha ? &*field.alpha : nullptr);
+            field = NormalField{};
+            return encoder.finish(report_);
+        });
+        write_encoded(encoding, std::move(encoded));
+        describe_texture_levels();
     }
 
-    /// Adds a level to the texture of normals, and to that of roughness if it is wanted.
-    void add_level(const Image& normals, const std::optional<Image>& alpha, const Image& lengths,
-                   const TextureEncoding& encoding, GpuTexture& texture, GpuTexture& roughness) {
-        EncodedLevel level =
-            stages_.run("convert", [&] { return encode_level(normals, alpha, encoding, report_); });
-        texture.levels.push_back(std::move(level.bytes));
-        const auto all = lengths.as<float>();
-        WrittenLevel written{job_.output,
-                             normals.width,
-                             normals.height,
-                             mean_of(lengths),
-                             static_cast<double>(*std::min_element(all.begin(), all.end())),
-                             {},
-                             {},
-                             level.error};
-        if (request_.mips.roughness) {
-            const Image values = stages_.run("convert", [&] {
-                return roughness_from_lengths(lengths, *request_.mips.roughness);
+    [[nodiscard]] NormalTextureOptions options_for(const TextureEncoding& encoding) const {
+        return {.format = encoding.format,
+                .quality = encoding.quality,
+                .has_mips = request_.mips.wanted,
+                .roughness = request_.mips.roughness,
+                .measured_texels = request_.texture.measured_texels()};
+    }
+
+    static void check_alpha(TextureFormat format, bool has_alpha) {
+        if (!has_alpha || stores_alpha(format)) return;
+        throw UsageError(
+            fmt::format("--format {}: stores no alpha, which the map has", enum_name(format)),
+            "give --alpha drop, or a format with alpha");
+    }
+
+    void write_encoded(const TextureEncoding& encoding, NormalTexture encoded) {
+        result_.texture = encoding;
+        encoded.texture.metadata = texture_entries(encoding.format);
+        const TextureWriteOptions options{request_.texture.zstd_level};
+        stages_.run("write",
+                    [&] { write_texture(job_.output, encoded.texture, options, report_); });
+        std::optional<std::filesystem::path> roughness_file;
+        if (encoded.roughness) {
+            roughness_file = level_file(job_.output, 0, true);
+            encoded.roughness->metadata = roughness_entries(bits_of(encoded.roughness->format));
+            stages_.run("write", [&] {
+                write_texture(*roughness_file, *encoded.roughness, options, report_);
             });
-            written.mean_roughness = mean_of(values);
-            roughness.levels.push_back(stages_.run("convert", [&] {
-                return encode_texture_level(values, roughness.format, encoding.quality, report_);
-            }));
         }
-        result_.levels.push_back(std::move(written));
+        for (const NormalTextureLevel& level : encoded.levels) {
+            result_.levels.push_back({job_.output, level.width, level.height, level.mean_length,
+                                      level.min_length, roughness_file, level.mean_roughness,
+                                      level.error, level.confidence});
+        }
     }
 
     [[nodiscard]] std::string describe_levels(std::size_t count) const {
@@ -528,6 +540,7 @@ class LevelWriter {
     const ConvertRequest& request_;
     std::map<std::string, std::string> kept_;
     MapDescription stated_;              ///< By the input.
+    bool has_alpha_ = false;             ///< The input has alpha, which the output keeps.
     std::optional<AlphaContent> alpha_;  ///< Of the output, if it is known.
     Stages& stages_;
     Report& report_;
@@ -552,8 +565,8 @@ bool keeps_codes(const ConvertRequest& request, const InputMap& input,
 
 /// Returns whether the whole map must be in memory.
 bool needs_whole_map(const Job& job, const ConvertRequest& request) {
-    return is_texture(job.output) || request.mips.wanted || request.space.to_object ||
-           request.space.to_tangent;
+    if (request.space.to_object || request.space.to_tangent) return true;
+    return is_texture(job.output) ? request.texture.bound.degrees.has_value() : request.mips.wanted;
 }
 
 std::string describe_lengths(const LengthRange& lengths) {
@@ -582,9 +595,9 @@ void convert_codes(const ConvertRequest& request, const InputMap& input,
 }
 
 /// Decodes, converts and encodes the map by rows.
-void convert_rows(const ConvertRequest& request, const InputMap& input,
-                  const NormalMapSource& source, const AxisConversion& axes, Stages& stages,
-                  LevelWriter& writer, MapConversion& result) {
+void convert_rows(const std::filesystem::path& output, const ConvertRequest& request,
+                  const InputMap& input, const NormalMapSource& source, const AxisConversion& axes,
+                  Stages& stages, LevelWriter& writer, MapConversion& result) {
     NormalMapConversion conversion;
     conversion.rebuild_z = request.rebuild_z;
     conversion.axes = axes.mapping;
@@ -601,12 +614,19 @@ void convert_rows(const ConvertRequest& request, const InputMap& input,
         });
     }
     conversion.format = result.format;
-    writer.write_by_rows(source, std::move(conversion));
+    const bool writes_texture = is_texture(output);
+    if (writes_texture) {
+        conversion.texels_per_band = texels_per_band_of_textures;
+        writer.write_texture_by_rows(source, conversion);
+    } else {
+        writer.write_by_rows(source, std::move(conversion));
+    }
     result.steps.push_back(request.rebuild_z ? "z computed from x and y"
                                              : describe_lengths(*result.lengths));
     if (axes.mapping != same_axes) result.steps.push_back(describe_axes(axes.mapping));
     for (const ConvertStep& step : steps_of(request))
         result.steps.push_back(step.description);
+    if (writes_texture) writer.describe_texture_levels();
 }
 
 /// Decodes the unit normals of the input, with y as it is stored.
@@ -701,8 +721,9 @@ MapConversion convert_map(const Job& job, const ConvertRequest& request, Stages&
         });
         writer.write_field(field);
     } else {
-        about(job.input,
-              [&] { convert_rows(request, input, source, axes, stages, writer, result); });
+        about(job.input, [&] {
+            convert_rows(job.output, request, input, source, axes, stages, writer, result);
+        });
     }
     // Findings of resized maps and of mip levels count texels of other widths.
     const bool has_one_size = !request.resize.size && !request.mips.wanted;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include "common/options.h"
@@ -12,6 +13,7 @@
 #include "relief/mesh/block_compression.h"
 #include "relief/mesh/map_description.h"
 #include "relief/mesh/normal_map.h"
+#include "relief/mesh/normal_texture.h"
 #include "relief/mesh/statistics.h"
 #include "relief/shade/image_compare.h"
 
@@ -35,51 +37,10 @@ NormalMapFormat normal_format_of(TextureFormat format) {
             .dither = Dither::none};
 }
 
-/// The first channels of an image.
-Image first_channels(const Image& image, int channels) {
-    if (image.channels == channels) return image;
-    Image result = make_image(image.width, image.height, channels, image.bits(), image.color_space);
-    std::visit(
-        [&]<typename Sample>(std::vector<Sample>& samples) {
-            const auto from = image.as<Sample>();
-            const auto held = static_cast<std::size_t>(image.channels);
-            const auto kept = static_cast<std::size_t>(channels);
-            for (std::size_t i = 0; i < samples.size(); ++i)
-                samples[i] = from[i / kept * held + i % kept];
-        },
-        result.samples);
-    return result;
-}
-
-std::vector<std::byte> encoded(const Image& normals, const std::optional<Image>& alpha,
-                               const TextureEncoding& encoding, Report& report) {
-    const std::optional<BlockFormat> blocks = block_format_of(encoding.format);
-    if (blocks && channels_of(*blocks) == 2) {
-        return encode_normal_blocks(normals, {.format = *blocks, .quality = encoding.quality},
-                                    report);
-    }
-    NormalMapFormat format = normal_format_of(encoding.format);
-    // BC7 is encoded from the exact components, not from codes of 8 bits.
-    if (blocks) format.bits = 32;
-    Image codes = encode_normal_map(normals, format, report);
-    if (alpha) codes = with_alpha(codes, *alpha);
-    codes = first_channels(codes, std::min(codes.channels, channels_of(encoding.format)));
-    return encode_texture_level(codes, encoding.format, encoding.quality, report);
-}
-
 /// Decodes the normals of a level of a texture.
 Image normals_of(const Image& level, FlatCode flat, Green green) {
     if (level.channels == 2) return decode_xy_map(level, {0, 1}, green, flat);
     return decode_normal_map(level, green, flat);
-}
-
-Image decoded(const EncodedLevel& level, TextureFormat format, int width, int height) {
-    GpuTexture texture;
-    texture.format = format;
-    texture.width = width;
-    texture.height = height;
-    texture.levels.push_back(level.bytes);
-    return normals_of(decode_texture_level(texture, 0), normal_format_of(format).flat, Green::up);
 }
 
 ErrorStats error_of(const Image& exact, const Image& result) {
@@ -101,6 +62,11 @@ void add_texture_options(CLI::App& app, TextureOptions& options) {
     add_choice(app, "--quality", options.quality, enum_choices<BlockQuality>(),
                "Search for block formats: fast, normal or best. Default: normal.")
         .group(group);
+    add_choice(app, "--measure", options.measuring, measuring_words,
+               "The errors of all levels: in random blocks of 4 x 4 texels, at most 4096 of a "
+               "level, with the confidence of the mean (quick); of all texels (full); or none. "
+               "Default: quick.")
+        .group(group);
     add_error_bound(
         app, options.bound, group,
         "Choose the smallest and fastest of bc5, rg8 and rg16, and the quality, whose error is at "
@@ -116,8 +82,10 @@ void add_texture_options(CLI::App& app, TextureOptions& options) {
 void check_texture_options(const CLI::App& app, const ConvertRequest& request,
                            const std::filesystem::path& output) {
     if (!is_texture(output)) {
-        refuse_given(app, {"--format", "--quality", "--max-error", "--max-error-kind", "--zstd"},
-                     "an output file .ktx2 or .dds");
+        refuse_given(
+            app,
+            {"--format", "--quality", "--max-error", "--max-error-kind", "--measure", "--zstd"},
+            "an output file .ktx2 or .dds");
         return;
     }
     check(request.texture.bound);
@@ -144,23 +112,29 @@ void check_texture_options(const CLI::App& app, const ConvertRequest& request,
     }
 }
 
-EncodedLevel encode_level(const Image& normals, const std::optional<Image>& alpha,
-                          const TextureEncoding& encoding, Report& report) {
-    if (alpha && channels_of(encoding.format) < 4) {
-        throw UsageError(fmt::format("--format {}: stores no alpha, which the map has",
-                                     enum_name(encoding.format)),
-                         "give --alpha drop, or a format with alpha");
+std::size_t TextureOptions::measured_texels() const {
+    switch (measuring.value_or(Measuring::quick)) {
+        case Measuring::none:
+            return 0;
+        case Measuring::full:
+            return std::numeric_limits<std::size_t>::max();
+        case Measuring::quick:
+            break;
     }
-    EncodedLevel level;
-    level.bytes = encoded(normals, alpha, encoding, report);
-    level.error = error_of(normals, decoded(level, encoding.format, normals.width, normals.height));
-    return level;
+    return default_measured_texels;
 }
 
 std::string level_text(std::size_t level, const LevelError& error) {
+    std::string margin, share;
+    if (error.confidence) {
+        margin = fmt::format(" +- {:.3f}", error.confidence->mean_margin);
+        share = fmt::format(", exceeded in at most {:.2g} % of the blocks",
+                            100.0 * error.confidence->share_above_max);
+    }
     return fmt::format(
-        "level {}, {} x {}: mean error {:.3f} degrees (99 %: {:.3f}, maximum: {:.3f})", level,
-        error.width, error.height, error.error.mean, error.error.p99, error.error.max);
+        "level {}, {} x {}: mean error {:.3f}{} degrees (99 %: {:.3f}, maximum: {:.3f}{})", level,
+        error.width, error.height, error.error.mean, margin, error.error.p99, error.error.max,
+        share);
 }
 
 ExactMap read_exact_map(const std::filesystem::path& file, const AssumedKinds& assumed) {
@@ -238,7 +212,7 @@ ExactComparison compare_levels(const std::filesystem::path& file, const ExactMap
     for (std::size_t i = 0; i < levels.normals.size(); ++i) {
         const Image& level = levels.normals[i];
         const Image& of_level = i == 0 ? compared : means[i - 1];
-        result.levels.push_back({level.width, level.height, error_of(of_level, level)});
+        result.levels.push_back({level.width, level.height, error_of(of_level, level), {}});
     }
     return result;
 }
@@ -262,8 +236,13 @@ TextureEncoding choose_encoding(const TextureOptions& options, const Image& norm
     }
     double least = 180.0;
     for (const TextureEncoding& each : tried) {
-        Report unread;
-        const ErrorStats error = encode_level(normals, std::nullopt, each, unread).error;
+        NormalTextureEncoder encoder(normals.width, normals.height, false,
+                                     {.format = each.format,
+                                      .quality = each.quality,
+                                      .has_mips = false,
+                                      .measured_texels = std::numeric_limits<std::size_t>::max()});
+        encoder.add(normals);
+        const ErrorStats error = *encoder.finish().levels.front().error;
         if (options.bound.allows(error)) return each;
         least = std::min(least, options.bound.error(error));
     }

@@ -32,6 +32,7 @@ MapTextureOptions texture_options_of(const ConvertRequest& request, MapKind kind
     options.quality = request.texture.quality.value_or(BlockQuality::normal);
     options.has_mips = request.mips.wanted;
     options.alpha_cutoff = request.values.alpha_cutoff;
+    options.measured_texels = request.texture.measured_texels();
     return options;
 }
 
@@ -166,7 +167,7 @@ FileOutcome convert_values(const Job& job, const ConvertRequest& request, MapKin
     for (std::size_t i = 0; i < written.levels.size(); ++i) {
         const MapTextureLevel& level = written.levels[i];
         lines.push_back(fmt::format("level {}, {} x {}: {}", i, level.width, level.height,
-                                    error_text(kind, level.error)));
+                                    error_text(kind, level)));
     }
     summary.add("wrote", lines, json_of(written));
     summary.add_findings(outcome.findings);
@@ -174,7 +175,7 @@ FileOutcome convert_values(const Job& job, const ConvertRequest& request, MapKin
     outcome.line =
         fmt::format("{}: {} x {}, {}, {}, {}", job.output.string(), written.header.width,
                     written.header.height, format_text(written.header),
-                    error_text(kind, written.levels.front().error), outcome.findings.count_text());
+                    error_text(kind, written.levels.front()), outcome.findings.count_text());
     return outcome;
 }
 

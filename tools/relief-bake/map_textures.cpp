@@ -94,14 +94,26 @@ WrittenTexture write_map_texture(const std::filesystem::path& file, MapKind kind
     return {file, kind, std::move(encoded.texture), std::move(encoded.levels)};
 }
 
-std::string error_text(MapKind kind, const ErrorStats& error) {
-    if (are_normals(kind)) {
-        return fmt::format("error {:.3f} degrees RMS (99 %: {:.3f}, maximum: {:.3f})", error.rms,
-                           error.p99, error.max);
+std::string error_text(MapKind kind, const MapTextureLevel& level) {
+    const ErrorStats& error = level.error;
+    if (error.count == 0) return "error not measured";
+    const int digits = are_normals(kind) ? 3 : 2;
+    std::string margin, share;
+    if (level.confidence) {
+        margin = fmt::format(" +- {:.{}f}", level.confidence->rms_margin, digits);
+        share = fmt::format(", exceeded in at most {:.2g} % of the blocks",
+                            100.0 * level.confidence->share_above_max);
     }
     const std::string psnr = error.psnr ? fmt::format(", PSNR {:.1f} dB", *error.psnr) : "";
-    return fmt::format("error {:.2f} codes of 8 bits RMS (99 %: {:.2f}, maximum: {:.2f}){}",
-                       error.rms, error.p99, error.max, psnr);
+    return fmt::format("error {:.{}f}{} {} RMS (99 %: {:.{}f}, maximum: {:.{}f}{}){}", error.rms,
+                       digits, margin, are_normals(kind) ? "degrees" : "codes of 8 bits", error.p99,
+                       digits, error.max, digits, share, psnr);
+}
+
+void add_confidence(Json& json, const SampleConfidence& confidence) {
+    json.update({{"mean_margin", confidence.mean_margin},
+                 {"rms_margin", confidence.rms_margin},
+                 {"share_above_max", confidence.share_above_max}});
 }
 
 std::string format_text(const GpuTexture& header) {
@@ -116,6 +128,8 @@ Json json_of(const WrittenTexture& texture) {
                      {"rms", level.error.rms},
                      {"p99", level.error.p99},
                      {"max", level.error.max}};
+        if (level.error.count == 0) json = {{"width", level.width}, {"height", level.height}};
+        if (level.confidence) add_confidence(json, *level.confidence);
         if (level.error.psnr) json["psnr"] = *level.error.psnr;
         return json;
     });

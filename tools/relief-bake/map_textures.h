@@ -50,7 +50,10 @@ WrittenTexture write_map_texture(const std::filesystem::path& file, MapKind kind
 
 /// "mean error 0.39 degrees (99 %: 1.13, maximum: 2.45)", "error 1.2 codes RMS (99 %: 3.1, maximum:
 /// 9.0), PSNR 46.5 dB"
-std::string error_text(MapKind kind, const ErrorStats& error);
+std::string error_text(MapKind kind, const MapTextureLevel& level);
+
+/// Adds "mean_margin", "rms_margin" and "share_above_max".
+void add_confidence(Json& json, const SampleConfidence& confidence);
 
 /// "bc7, sRGB"
 std::string format_text(const GpuTexture& header);

@@ -489,7 +489,7 @@ std::string line_of(const FinishedTexture& texture) {
     return fmt::format(
         "{}: {} x {}, {}, {}, {}, from {}", file_and_size(written.file), written.header.width,
         written.header.height, format_text(written.header), counted(written.levels.size(), "level"),
-        error_text(written.kind, written.levels.front().error), fmt::join(texture.sources, ", "));
+        error_text(written.kind, written.levels.front()), fmt::join(texture.sources, ", "));
 }
 
 ExitCode run_textures(const CLI::App& app, const TexturesRequest& request) {

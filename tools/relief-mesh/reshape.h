@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "common/file_jobs.h"
+#include "common/measuring.h"
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/summary.h"
@@ -23,19 +24,13 @@
 
 namespace relief::tools {
 
-/// How the distance between IN and OUT is measured: not at all, at random samples, or at all
-/// vertices and inside the triangles.
-enum class Measuring { none, quick, full };
-
-inline const Choices<Measuring> measuring_words = {
-    {"quick", Measuring::quick}, {"full", Measuring::full}, {"none", Measuring::none}};
-
 /// The options that all commands have which change triangles.
 struct ReshapeRequest {
     FileWords words;
     std::optional<ModelFormat> format;  ///< Of files in an output folder.
     NormalMode normals = NormalMode::keep;
-    std::optional<Measuring> measuring;  ///< --measure
+    /// Of the distance between IN and OUT; `full`: at all vertices and inside the triangles.
+    std::optional<Measuring> measuring;
     ReportOptions report;
     GeneralOptions general;
 };

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "image/mip_rows.h"
 #include "parallel.h"
 #include "relief/mesh/report.h"
 
@@ -53,16 +54,15 @@ Value rounded(float mean) {
 }
 
 /// Computes one row of the result if a size is odd or 1.
+/// \param down, rows  the rows that are averaged
 template <int Channels, typename Value, typename Sample, typename Decode>
-void halve_row(const Sample* above, std::size_t width, std::size_t height, std::size_t y,
-               Decode decode, Value* row) {
-    const Taps down = taps_of(height, y);
+void halve_row(const Sample* rows, std::size_t width, const Taps& down, Decode decode, Value* row) {
     for (std::size_t x = 0; x < std::max<std::size_t>(width / 2, 1); ++x) {
         const Taps across = taps_of(width, x);
         for (std::size_t c = 0; c < Channels; ++c) {
             float sum = 0.0F;
             for (std::size_t j = 0; j < down.count; ++j) {
-                const Sample* from = above + ((down.first + j) * width + across.first) * Channels;
+                const Sample* from = rows + (j * width + across.first) * Channels;
                 for (std::size_t i = 0; i < across.count; ++i) {
                     sum += down.weights[j] * across.weights[i] *
                            static_cast<float>(decode(from[i * Channels + c], c));
@@ -107,7 +107,9 @@ Level<Value> halved(const Sample* above, std::size_t width, std::size_t height, 
                 if (is_even) {
                     halve_even_row<Channels>(above + 2 * y * width * Channels, width, decode, row);
                 } else {
-                    halve_row<Channels>(above, width, height, y, decode, row);
+                    const Taps down = taps_of(height, y);
+                    halve_row<Channels>(above + down.first * width * Channels, width, down, decode,
+                                        row);
                 }
             }
         });
@@ -206,7 +208,37 @@ std::vector<Image> levels(const Image& image) {
     return levels_of<Channels, std::uint16_t, std::uint16_t>(image, keep, same);
 }
 
+template <int Channels>
+void halve_floats(std::size_t width, std::size_t height, std::size_t y, const float* rows,
+                  float* row) {
+    const auto keep = [](float value, std::size_t) { return value; };
+    if (width % 2 == 0 && height % 2 == 0) {
+        halve_even_row<Channels>(rows, width, keep, row);
+    } else {
+        halve_row<Channels>(rows, width, taps_of(height, y), keep, row);
+    }
+}
+
 }  // namespace
+
+MipSourceRows detail::mip_source_rows(std::size_t height, std::size_t y) {
+    const Taps taps = taps_of(height, y);
+    return {taps.first, taps.count};
+}
+
+void detail::halve_float_rows(int channels, std::size_t width, std::size_t height, std::size_t y,
+                              const float* rows, float* row) {
+    switch (channels) {
+        case 1:
+            return halve_floats<1>(width, height, y, rows, row);
+        case 2:
+            return halve_floats<2>(width, height, y, rows, row);
+        case 3:
+            return halve_floats<3>(width, height, y, rows, row);
+        default:
+            return halve_floats<4>(width, height, y, rows, row);
+    }
+}
 
 std::vector<Image> mip_levels(const Image& image) {
     if (image.empty()) throw InvalidInput("the image is empty");

@@ -124,6 +124,28 @@ struct NormalCoding<float, Real> {
     }
 };
 
+/// Decodes many samples: codes of 8 bits by a table.
+template <typename Sample>
+class SampleDecoder {
+  public:
+    explicit SampleDecoder(FlatCode flat) : coding_{flat} {
+        if constexpr (sizeof(Sample) == 1) {
+            for (std::size_t code = 0; code < table_.size(); ++code)
+                table_[code] = coding_.decoded(static_cast<Sample>(code));
+        }
+    }
+    [[nodiscard]] double operator()(Sample sample) const {
+        if constexpr (sizeof(Sample) == 1)
+            return table_[sample];
+        else
+            return coding_.decoded(sample);
+    }
+
+  private:
+    NormalCoding<Sample> coding_;
+    std::array<double, sizeof(Sample) == 1 ? 256 : 1> table_{};
+};
+
 /// Identifies the texels of a map that are read as exactly flat, see FlatTexels.
 template <typename Sample>
 class ExactFlat {

@@ -18,6 +18,7 @@
 #include "image/normal_bands.h"
 #include "image/normal_coding.h"
 #include "image/texel_loops.h"
+#include "image/unit_vectors.h"
 #include "relief/mesh/map_description.h"
 #include "relief/mesh/report.h"
 
@@ -97,25 +98,65 @@ bool has_no_direction(const Sample* sample, FlatCode flat) {
     }
 }
 
+/// Decodes texels of a map one by one or in groups.
+template <typename Sample>
+class NormalDecoder {
+  public:
+    NormalDecoder(int channels, Green green, FlatCode flat, const ExactFlat<Sample>& exact)
+        : channels_(static_cast<std::size_t>(channels)),
+          up_(green == Green::up ? 1.0 : -1.0),
+          flat_(flat),
+          decoded_(flat),
+          exact_(exact) {}
+
+    void decode_row(const Sample* samples, std::size_t width, std::size_t first_texel,
+                    float* normals, Report& found) const {
+        const UnitVectorFunctions functions = unit_vector_functions();
+        VectorGroup group;
+        group.z.fill(1.0);
+        for (std::size_t first = 0; first < width; first += vectors_per_group) {
+            const std::size_t count = std::min(vectors_per_group, width - first);
+            for (std::size_t i = 0; i < count; ++i) {
+                const Direction vector = vector_of(samples + (first + i) * channels_);
+                group.x[i] = vector.x;
+                group.y[i] = vector.y;
+                group.z[i] = vector.z;
+            }
+            if (functions.make_units(group, count, normals + 3 * first)) continue;
+            for (std::size_t i = 0; i < count; ++i) {
+                Direction direction{group.x[i], group.y[i], group.z[i]};
+                if (!make_unit(direction)) {
+                    found.add("normal without direction", "texel", first_texel + first + i,
+                              "read as flat");
+                }
+                store(direction, normals + 3 * (first + i));
+            }
+        }
+    }
+
+  private:
+    [[nodiscard]] Direction vector_of(const Sample* sample) const {
+        if (has_no_direction(sample, flat_)) return {0.0, 0.0, 0.0};
+        const double z = decoded_(sample[2]);
+        if (exact_.is_flat(sample[0], sample[1])) return {0.0, 0.0, z};
+        return {decoded_(sample[0]), decoded_(sample[1]) * up_, z};
+    }
+
+    std::size_t channels_;
+    double up_;
+    FlatCode flat_;
+    SampleDecoder<Sample> decoded_;
+    const ExactFlat<Sample>& exact_;
+};
+
 template <typename Sample>
 void decode(const ImageView& map, Green green, FlatCode flat, const ExactFlat<Sample>& exact,
             const MutableImageView& normals, Report& report) {
     const auto width = static_cast<std::size_t>(map.width);
-    const auto channels = static_cast<std::size_t>(map.channels);
-    const NormalCoding<Sample> coding{flat};
-    const double up = green == Green::up ? 1.0 : -1.0;
+    const NormalDecoder<Sample> decoder(map.channels, green, flat, exact);
     for_each_row(map.width, map.height, report, [&](std::size_t row, Report& found) {
-        const Sample* sample = map.row<Sample>(static_cast<int>(row));
-        float* normal = normals.row<float>(static_cast<int>(row));
-        for (std::size_t x = 0; x < width; ++x, sample += channels, normal += 3) {
-            Direction direction{coding.decoded(sample[0]), coding.decoded(sample[1]) * up,
-                                coding.decoded(sample[2])};
-            if (exact.is_flat(sample[0], sample[1])) direction.x = direction.y = 0.0;
-            if (has_no_direction(sample, flat)) direction = {0.0, 0.0, 0.0};
-            if (!make_unit(direction))
-                found.add("normal without direction", "texel", row * width + x, "read as flat");
-            store(direction, normal);
-        }
+        decoder.decode_row(map.row<Sample>(static_cast<int>(row)), width, row * width,
+                           normals.row<float>(static_cast<int>(row)), found);
     });
 }
 

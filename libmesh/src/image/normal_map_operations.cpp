@@ -16,6 +16,7 @@
 #include "image/normal_bands.h"
 #include "image/normal_coding.h"
 #include "image/texel_loops.h"
+#include "image/unit_vectors.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -48,25 +49,35 @@ double length_tolerance(FlatCode flat) {
 }
 
 template <typename Sample>
-RowLengths lengths_of_row(const Image& map, FlatCode flat, std::size_t row, Report& found) {
+RowLengths lengths_of_row(const Image& map, const SampleDecoder<Sample>& decoded, double tolerance,
+                          std::size_t row, Report& found) {
     const auto width = static_cast<std::size_t>(map.width);
     const auto stride = static_cast<std::size_t>(map.channels);
-    const NormalCoding<Sample> coding{flat};
-    const double tolerance = length_tolerance<Sample>(flat);
+    const UnitVectorFunctions functions = unit_vector_functions();
     const Sample* sample = map.as<Sample>().data() + row * width * stride;
     RowLengths result;
-    for (std::size_t texel = row * width; texel < (row + 1) * width; ++texel, sample += stride) {
-        const double x = coding.decoded(sample[0]);
-        const double y = coding.decoded(sample[1]);
-        const double z = coding.decoded(sample[2]);
-        const double length = std::sqrt(x * x + y * y + z * z);
-        if (!(std::abs(length - 1.0) <= tolerance))
-            found.add("normal not of unit length", "texel", texel, "scaled to length 1");
-        if (!std::isfinite(length)) continue;
-        result.min = std::min(result.min, length);
-        result.max = std::max(result.max, length);
-        result.sum += length;
-        ++result.count;
+    VectorGroup group;
+    VectorNumbers lengths;
+    for (std::size_t first = 0; first < width; first += vectors_per_group) {
+        const std::size_t count = std::min(vectors_per_group, width - first);
+        for (std::size_t i = 0; i < count; ++i, sample += stride) {
+            group.x[i] = decoded(sample[0]);
+            group.y[i] = decoded(sample[1]);
+            group.z[i] = decoded(sample[2]);
+        }
+        functions.lengths(group, lengths);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double length = lengths[i];
+            if (!(std::abs(length - 1.0) <= tolerance)) {
+                found.add("normal not of unit length", "texel", row * width + first + i,
+                          "scaled to length 1");
+            }
+            if (!std::isfinite(length)) continue;
+            result.min = std::min(result.min, length);
+            result.max = std::max(result.max, length);
+            result.sum += length;
+            ++result.count;
+        }
     }
     return result;
 }
@@ -136,8 +147,10 @@ void detail::append_row_lengths(const Image& map, FlatCode flat, std::vector<Row
     const std::size_t first = lengths.size();
     lengths.resize(first + static_cast<std::size_t>(map.height));
     with_sample_type(map, [&]<typename Sample>(Sample) {
+        const SampleDecoder<Sample> decoded(flat);
+        const double tolerance = length_tolerance<Sample>(flat);
         for_each_row(map.width, map.height, report, [&](std::size_t row, Report& found) {
-            lengths[first + row] = lengths_of_row<Sample>(map, flat, row, found);
+            lengths[first + row] = lengths_of_row<Sample>(map, decoded, tolerance, row, found);
         });
     });
 }

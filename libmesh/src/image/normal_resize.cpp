@@ -19,6 +19,7 @@
 
 #include "image/normal_bands.h"
 #include "image/texel_loops.h"
+#include "image/unit_vectors.h"
 #include "portable_math.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
@@ -275,6 +276,34 @@ namespace {
 
 constexpr double shortest_mean = 1e-6;
 
+/// Normalizes some vectors. \param lengths  gets the length of each one
+void split_group(const UnitVectorFunctions& functions, std::size_t first_texel, float* vectors,
+                 std::span<float> lengths, Report& found) {
+    VectorGroup group;
+    group.z.fill(1.0);
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+        group.x[i] = vectors[3 * i];
+        group.y[i] = vectors[3 * i + 1];
+        group.z[i] = vectors[3 * i + 2];
+    }
+    VectorNumbers exact;
+    functions.lengths(group, exact);
+    bool are_long = true;
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+        are_long &= exact[i] >= shortest_mean;
+        lengths[i] = static_cast<float>(std::min(exact[i], 1.0));
+    }
+    if (are_long && functions.make_units(group, lengths.size(), vectors)) return;
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+        Direction direction{group.x[i], group.y[i], group.z[i]};
+        if (exact[i] < shortest_mean) direction = {0.0, 0.0, 0.0};
+        if (!make_unit(direction)) {
+            found.add("normals that cancel", "texel", first_texel + i, "made flat, with length 0");
+        }
+        store(direction, vectors + 3 * i);
+    }
+}
+
 }  // namespace
 
 std::vector<Image> normal_mip_levels(const Image& normals) {
@@ -287,17 +316,17 @@ Image split_lengths(Image& means, Report& report) {
     Image lengths = make_image(means.width, means.height, 1, 32, ColorSpace::data);
     const std::span<float> vectors = means.as<float>();
     const std::span<float> to = lengths.as<float>();
-    for_each_texel(to.size(), report, [&](std::size_t texel, Report& found) {
-        float* const vector = &vectors[texel * 3];
-        Direction direction{vector[0], vector[1], vector[2]};
-        const double length = std::sqrt(direction.x * direction.x + direction.y * direction.y +
-                                        direction.z * direction.z);
-        to[texel] = static_cast<float>(std::min(length, 1.0));
-        if (length < shortest_mean) direction = {0.0, 0.0, 0.0};
-        if (!make_unit(direction))
-            found.add("normals that cancel", "texel", texel, "made flat, with length 0");
-        store(direction, vector);
-    });
+    constexpr std::size_t grain = texels_per_piece / vectors_per_group;
+    const std::size_t groups = (to.size() + vectors_per_group - 1) / vectors_per_group;
+    parallel_for_reporting(
+        groups, grain, report, [&](std::size_t begin, std::size_t end, Report& found) {
+            const UnitVectorFunctions functions = unit_vector_functions();
+            for (std::size_t group = begin; group < end; ++group) {
+                const std::size_t first = group * vectors_per_group;
+                const std::size_t count = std::min(vectors_per_group, to.size() - first);
+                split_group(functions, first, &vectors[3 * first], to.subspan(first, count), found);
+            }
+        });
     return lengths;
 }
 

@@ -58,6 +58,9 @@ const MapTextureKind* find_map_texture_kind(MapKind kind);
 /// Returns whether a format stores alpha.
 bool stores_alpha(TextureFormat format);
 
+/// The number of texels of a level whose errors are measured, unless another one is requested.
+inline constexpr std::size_t default_measured_texels = std::size_t{1} << 16;
+
 struct MapTextureOptions {
     MapKind kind = MapKind::color;
     /// Absent: the first format of the kind; for integers of colors with alpha the first one with
@@ -72,9 +75,20 @@ struct MapTextureOptions {
     /// Of packed maps: the channel of roughness, and whether it has 1 - roughness.
     int roughness_channel = 1;
     bool is_smoothness = false;
-    /// The maximum number of texels of a level whose errors are measured, in evenly spaced rows of
-    /// blocks. 0: no errors are measured.
-    std::size_t measured_texels = std::size_t{1} << 18;
+    /// The maximum number of texels of a level whose errors are measured, in random blocks of
+    /// 4 x 4 texels, one of each of equal runs of blocks. 0: no errors are measured.
+    std::size_t measured_texels = default_measured_texels;
+};
+
+/// The confidence of errors that were measured in random blocks of a level.
+struct SampleConfidence {
+    /// The mean of all texels lies within this distance of the measured one, with a confidence of
+    /// 95 %.
+    double mean_margin = 0.0;
+    double rms_margin = 0.0;  ///< The same for the root mean square.
+    /// At most this share of all blocks have an error above the measured maximum, with a confidence
+    /// of 95 %.
+    double share_above_max = 0.0;
 };
 
 /// A level of a texture.
@@ -84,6 +98,8 @@ struct MapTextureLevel {
     /// For normals, angles in degrees. For others, the root mean square of the errors of the
     /// channels of a texel, in codes of 8 bits, with the PSNR; colors are compared sRGB-coded.
     ErrorStats error;
+    /// Absent: all texels were measured, or none.
+    std::optional<SampleConfidence> confidence{};
 };
 
 struct MapTexture {

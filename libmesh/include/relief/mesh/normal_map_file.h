@@ -16,6 +16,7 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
+#include "relief/mesh/normal_texture.h"
 #include "relief/mesh/report.h"
 
 namespace RELIEF_API relief {
@@ -83,5 +84,24 @@ ConvertedMapFile convert_normal_map_file(const NormalMapSource& source,
                                          const NormalMapConversion& conversion,
                                          Report& report = IgnoredReport(),
                                          const std::function<void(double)>& progress = {});
+
+/// The result of encoding a file.
+struct EncodedMapFile {
+    NormalTexture encoded;
+    std::optional<LengthRange> lengths;  ///< As in ConvertedMapFile.
+    BumpFileTimes times;                 ///< Nothing is written.
+};
+
+/// Converts a normal map, and encodes it as a texture that the caller writes.
+///
+/// The operations are those of convert_normal_map_file(), except for `keeps_codes`, `format`,
+/// `metadata` and `write`. Memory holds the texture, and bands.
+///
+/// \throws InvalidInput, FileError
+EncodedMapFile encode_normal_map_file(const NormalMapSource& source,
+                                      const NormalMapConversion& conversion,
+                                      const NormalTextureOptions& options,
+                                      Report& report = IgnoredReport(),
+                                      const std::function<void(double)>& progress = {});
 
 }  // namespace relief

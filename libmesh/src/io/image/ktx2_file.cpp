@@ -421,6 +421,14 @@ std::vector<std::byte> load_level(const TextureContainer& container, Bytes bytes
 }
 
 std::vector<std::byte> ktx2_bytes(const GpuTexture& texture, const TextureWriteOptions& options) {
+    std::vector<std::byte> bytes;
+    write_ktx2(texture, options,
+               [&](Bytes part) { bytes.insert(bytes.end(), part.begin(), part.end()); });
+    return bytes;
+}
+
+void write_ktx2(const GpuTexture& texture, const TextureWriteOptions& options,
+                const std::function<void(Bytes)>& write) {
     check_swizzle(texture.swizzle);
     if (options.zstd_level && (*options.zstd_level < 1 || *options.zstd_level > 22))
         throw InvalidInput(fmt::format("zstd has levels 1 to 22, not {}", *options.zstd_level));
@@ -471,11 +479,14 @@ std::vector<std::byte> ktx2_bytes(const GpuTexture& texture, const TextureWriteO
     }
     bytes.insert(bytes.end(), descriptor.begin(), descriptor.end());
     bytes.insert(bytes.end(), entries.begin(), entries.end());
+    std::size_t written = 0;
     for (std::size_t i = levels.size(); i-- > 0;) {
-        bytes.resize(offsets[i]);
-        bytes.insert(bytes.end(), levels[i].begin(), levels[i].end());
+        bytes.resize(offsets[i] - written);  // Zeros up to the level.
+        write(bytes);
+        write(levels[i]);
+        bytes.clear();
+        written = offsets[i] + levels[i].size();
     }
-    return bytes;
 }
 
 }  // namespace relief::detail

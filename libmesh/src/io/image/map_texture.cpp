@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "image/texel_loops.h"
+#include "io/image/block_sample.h"
 #include "io/image/texture_container.h"
 #include "parallel.h"
 
@@ -218,103 +219,53 @@ std::vector<Image> levels_of(const Image& map, const MapTextureKind& kind,
 
 // Errors.
 
-/// The rows of blocks whose texels are measured: `first`, `first + step` and so on.
-std::size_t measured_step(int width, int height, std::size_t max_texels) {
-    const std::size_t texels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    return std::max<std::size_t>((texels + max_texels - 1) / max_texels, 1);
-}
-
-/// Decodes rows of a level. \param rows  4, or fewer at the end of the level
-Image decoded_rows(const GpuTexture& texture, std::size_t level, int first, int rows) {
-    const int width = level_side(texture.width, level);
-    GpuTexture part;
-    part.format = texture.format;
-    part.width = width;
-    part.height = rows;
-    const std::size_t row_bytes = texture_level_size(texture.format, width, 4) / 4;
-    const std::size_t begin = static_cast<std::size_t>(first) * row_bytes;
-    const std::size_t size = texture_level_size(texture.format, width, rows);
-    const auto from = texture.levels[level].begin() + static_cast<std::ptrdiff_t>(begin);
-    part.levels.emplace_back(from, from + static_cast<std::ptrdiff_t>(size));
-    return decode_texture_level(part, 0);
-}
-
-/// Returns the errors of the texels of some rows.
-std::vector<float> value_errors(const Image& exact, const Image& decoded, int first) {
-    const std::size_t texels =
-        static_cast<std::size_t>(decoded.width) * static_cast<std::size_t>(decoded.height);
-    const std::size_t start =
-        static_cast<std::size_t>(first) * static_cast<std::size_t>(exact.width);
+/// Returns the errors of the texels of some blocks of a row. \param row  of blocks
+BlockErrors value_errors(const Image& exact, std::size_t row, const EncodedRow& encoded,
+                         std::span<const std::size_t> columns) {
+    const Image decoded = decoded_columns(encoded, columns);
+    const std::size_t start = 4 * row * static_cast<std::size_t>(exact.width);
     const auto exact_channels = static_cast<std::size_t>(exact.channels);
     const auto decoded_channels = static_cast<std::size_t>(decoded.channels);
     const std::size_t compared = std::min(exact_channels, decoded_channels);
-    std::vector<float> errors(texels);
-    std::visit(
+    return std::visit(
         [&]<typename A, typename B>(const std::vector<A>& a, const std::vector<B>& b) {
             constexpr double a_scale = 255.0 / largest_sample<A>;
             constexpr double b_scale = 255.0 / largest_sample<B>;
-            for (std::size_t t = 0; t < texels; ++t) {
+            return block_errors(encoded, columns, [&](std::size_t texel, std::size_t of_level) {
                 double sum = 0.0;
                 for (std::size_t c = 0; c < compared; ++c) {
                     const double difference =
-                        static_cast<double>(a[(start + t) * exact_channels + c]) * a_scale -
-                        static_cast<double>(b[t * decoded_channels + c]) * b_scale;
+                        static_cast<double>(a[(start + of_level) * exact_channels + c]) * a_scale -
+                        static_cast<double>(b[texel * decoded_channels + c]) * b_scale;
                     sum += difference * difference;
                 }
-                errors[t] = static_cast<float>(std::sqrt(sum / static_cast<double>(compared)));
-            }
+                return static_cast<float>(std::sqrt(sum / static_cast<double>(compared)));
+            });
         },
         exact.samples, decoded.samples);
-    return errors;
 }
 
-std::vector<float> normal_errors(const Image& exact, const Image& decoded, int first, Green green,
-                                 FlatCode flat) {
-    const Image normals = decoded.channels == 2 ? decode_xy_map(decoded, {0, 1}, green, flat)
-                                                : decode_normal_map(decoded, green, flat);
-    const std::size_t start =
-        static_cast<std::size_t>(first) * static_cast<std::size_t>(exact.width);
-    const std::span<const float> a = exact.as<float>();
-    const std::span<const float> b = normals.as<float>();
-    std::vector<float> errors(b.size() / 3);
-    for (std::size_t t = 0; t < errors.size(); ++t) {
-        const float* const x = &a[3 * (start + t)];
-        const float* const y = &b[3 * t];
-        const double angle = degrees_between({x[0], x[1], x[2]}, {y[0], y[1], y[2]});
-        errors[t] = static_cast<float>(angle);
-    }
-    return errors;
-}
-
-FlatCode flat_code_of(TextureFormat format) {
-    const std::optional<BlockFormat> blocks = block_format_of(format);
-    return blocks && is_signed(*blocks) ? FlatCode::middle : FlatCode::half;
-}
-
-ErrorStats level_error(const Image& exact, const GpuTexture& texture, std::size_t level,
-                       const MapTextureKind& kind, const MapTextureOptions& options) {
-    const std::size_t step = measured_step(exact.width, exact.height, options.measured_texels);
-    const std::size_t block_rows = (static_cast<std::size_t>(exact.height) + 3) / 4;
-    const std::size_t count = (block_rows + step - 1) / step;
-    std::vector<std::vector<float>> parts(count);
+MeasuredError level_error(const Image& exact, const GpuTexture& texture, std::size_t level,
+                          const MapTextureKind& kind, const MapTextureOptions& options) {
     const bool are_normals = kind.filter == MipFilter::normals;
-    const std::size_t grain = texels_per_piece / 4 / static_cast<std::size_t>(exact.width) + 1;
-    parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const int first = static_cast<int>(4 * i * step);
-            const int rows = std::min(4, exact.height - first);
-            const Image decoded = decoded_rows(texture, level, first, rows);
-            parts[i] = are_normals ? normal_errors(exact, decoded, first, options.green,
-                                                   flat_code_of(texture.format))
-                                   : value_errors(exact, decoded, first);
-        }
+    const auto width = static_cast<std::size_t>(exact.width);
+    const std::size_t row_bytes = texture_level_size(texture.format, exact.width, 4);
+    const std::span<const std::byte> bytes = texture.levels[level];
+    BlockSample sample(exact.width, exact.height, options.measured_texels);
+    const std::size_t block_rows = (static_cast<std::size_t>(exact.height) + 3) / 4;
+    sample.measure(0, block_rows, [&](std::size_t row, std::span<const std::size_t> columns) {
+        const std::size_t begin = row * row_bytes;
+        const EncodedRow encoded{
+            texture.format, bytes.subspan(begin, std::min(row_bytes, bytes.size() - begin)),
+            exact.width, std::min(4, exact.height - 4 * static_cast<int>(row))};
+        if (!are_normals) return value_errors(exact, row, encoded, columns);
+        return normal_block_errors(encoded, columns, exact.as<float>().data() + 3 * 4 * row * width,
+                                   options.green);
     });
-    std::vector<float> errors;
-    for (const std::vector<float>& part : parts)
-        errors.insert(errors.end(), part.begin(), part.end());
-    ErrorStats stats = error_stats(std::move(errors));
-    if (!are_normals && stats.rms > 0.0) stats.psnr = 20.0 * std::log10(255.0 / stats.rms);
-    return stats;
+    MeasuredError result = sample.result();
+    if (!are_normals && result.error.rms > 0.0)
+        result.error.psnr = 20.0 * std::log10(255.0 / result.error.rms);
+    return result;
 }
 
 // Encoding.
@@ -449,9 +400,13 @@ MapTexture encode_map_texture(const Image& map, const MapTextureOptions& options
     const auto add = [&](const Image& level) {
         texture.levels.push_back(are_normals ? encoded_normals(level, format, options, report)
                                              : encoded_values(level, format, options, report));
-        MapTextureLevel written{level.width, level.height, {}};
-        if (options.measured_texels > 0)
-            written.error = level_error(level, texture, texture.levels.size() - 1, kind, options);
+        MapTextureLevel written{level.width, level.height, {}, {}};
+        if (options.measured_texels > 0) {
+            MeasuredError measured =
+                level_error(level, texture, texture.levels.size() - 1, kind, options);
+            written.error = std::move(measured.error);
+            written.confidence = measured.confidence;
+        }
         result.levels.push_back(std::move(written));
     };
     add(largest);

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -43,6 +44,10 @@ std::optional<TextureContainer> open_dds(std::span<const std::byte> bytes,
 std::vector<std::byte> load_level(const TextureContainer& container,
                                   std::span<const std::byte> bytes, std::size_t level,
                                   const std::filesystem::path& name);
+
+/// Writes a file in parts, without a copy of the levels.
+void write_ktx2(const GpuTexture& texture, const TextureWriteOptions& options,
+                const std::function<void(std::span<const std::byte>)>& write);
 
 /// Returns a whole file.
 std::vector<std::byte> ktx2_bytes(const GpuTexture& texture, const TextureWriteOptions& options);

@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <string_view>
 #include <utility>
 
@@ -438,10 +439,20 @@ void write_texture(const std::filesystem::path& file, const GpuTexture& texture,
     check_texture(texture);
     if (extension == ".dds" && options.zstd_level)
         throw InvalidInput("zstd compresses the levels of KTX2 files, not of DDS files");
-    const std::vector<std::byte> bytes =
-        extension == ".dds" ? dds_bytes(texture) : ktx2_bytes(texture, options);
-    replace_file(file, bytes);
-    if (extension == ".dds") report_lost_entries(texture, report);
+    if (extension == ".dds") {
+        replace_file(file, dds_bytes(texture));
+        report_lost_entries(texture, report);
+        return;
+    }
+    FileReplacement replacement(file);
+    std::ofstream stream(replacement.written_path(), std::ios::binary);
+    write_ktx2(texture, options, [&](Bytes part) {
+        stream.write(reinterpret_cast<const char*>(part.data()),
+                     static_cast<std::streamsize>(part.size()));
+    });
+    stream.close();
+    if (!stream) throw FileError(file, "cannot be written");
+    replacement.commit();
 }
 
 void detail::report_lost_entries(const GpuTexture& texture, Report& report) {

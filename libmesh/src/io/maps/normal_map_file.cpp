@@ -387,22 +387,86 @@ ConvertedMapFile convert_codes(const NormalMapSource& source, const std::filesys
     return result;
 }
 
-/// Applies the operations after resizing to a band.
-Image encoded(NormalBand band, int first_row, const NormalMapConversion& conversion,
-              Reports& reports) {
-    Report of_strength, of_blending;
-    if (conversion.strength) scale_slopes(band.normals, *conversion.strength, of_strength);
-    add_band(of_strength, first_row, conversion.width, reports.strength);
-    if (conversion.detail) {
-        blend_normal_rows(band.normals, first_row, conversion.detail->normals,
-                          conversion.detail->blend, of_blending);
-        add_band(of_blending, first_row, conversion.width, reports.blended);
+/// The bands of a converted map, before they are encoded.
+class ConvertedBands {
+  public:
+    ConvertedBands(const NormalMapSource& source, const NormalMapConversion& conversion,
+                   BumpFileTimes& times)
+        : conversion_(sized(source, conversion)),
+          times_(times),
+          decoded_(source, conversion_, prepare_resizing(SampleRows(source).info()), reports_,
+                   times) {
+        if (resampling_)
+            resized_.emplace(decoded_, *resampling_, overlap_, conversion_, reports_, times);
     }
-    NormalMapFormat format = conversion.format;
-    format.green = Green::up;
-    Image codes = encode_normal_rows(band.normals, format, first_row, reports.encoded);
-    return band.alpha ? with_alpha(codes, *band.alpha) : codes;
-}
+
+    /// The conversion, with the sizes of the result.
+    [[nodiscard]] const NormalMapConversion& conversion() const { return conversion_; }
+    [[nodiscard]] bool has_alpha() const { return decoded_.has_alpha(); }
+    [[nodiscard]] int band_rows() const { return band_rows_; }
+    [[nodiscard]] Reports& reports() { return reports_; }
+
+    /// \param first_row  of the next rows
+    NormalBand next(int first_row, int count) {
+        NormalBand band = resized_ ? resized_->next(count) : decoded_.next(count);
+        times_.convert += 1e3 * seconds_of([&] { change(band, first_row); });
+        return band;
+    }
+
+    /// The lengths of the vectors of the source, unless z was computed.
+    [[nodiscard]] std::optional<LengthRange> lengths() const {
+        if (conversion_.rebuild_z) return std::nullopt;
+        return range_of(decoded_.lengths());
+    }
+
+  private:
+    static NormalMapConversion sized(const NormalMapSource& source, NormalMapConversion result) {
+        if (result.width != 0 || result.height != 0) return result;
+        const ImageInfo info = SampleRows(source).info();
+        result.width = info.width;
+        result.height = info.height;
+        return result;
+    }
+
+    /// \return the number of last rows of the source that its first rows need
+    int prepare_resizing(const ImageInfo& info) {
+        band_rows_ = rows_per_band(conversion_.width, conversion_.texels_per_band);
+        if (conversion_.width == info.width && conversion_.height == info.height &&
+            conversion_.resize.repeat == glm::dvec2(1.0)) {
+            return 0;
+        }
+        check_resize(conversion_.width, conversion_.height, conversion_.resize);
+        resampling_.emplace(info.width, info.height, conversion_.width, conversion_.height,
+                            conversion_.resize);
+        overlap_ =
+            overlap_of(*resampling_, info.height, conversion_.height, conversion_.resize.wrap.y);
+        // The rows of a band also have no more texels of the source than a band.
+        const double scale = static_cast<double>(info.height) / conversion_.height;
+        const int of_source = rows_per_band(info.width, conversion_.texels_per_band);
+        band_rows_ = std::clamp(static_cast<int>(of_source / scale), 1, band_rows_);
+        return overlap_.tail;
+    }
+
+    /// Applies the operations after resizing.
+    void change(NormalBand& band, int first_row) {
+        Report of_strength, of_blending;
+        if (conversion_.strength) scale_slopes(band.normals, *conversion_.strength, of_strength);
+        add_band(of_strength, first_row, conversion_.width, reports_.strength);
+        if (!conversion_.detail) return;
+        blend_normal_rows(band.normals, first_row, conversion_.detail->normals,
+                          conversion_.detail->blend, of_blending);
+        add_band(of_blending, first_row, conversion_.width, reports_.blended);
+    }
+
+    NormalMapConversion conversion_;
+    BumpFileTimes& times_;
+    Reports reports_;
+    std::optional<Resampling> resampling_;
+    Overlap overlap_;
+    int band_rows_ = 1;
+    DecodedRows decoded_;
+    std::optional<ResizedRows> resized_;
+};
 
 }  // namespace
 
@@ -420,43 +484,45 @@ ConvertedMapFile convert_normal_map_file(const NormalMapSource& source,
                                          const std::function<void(double)>& progress) {
     if (given.keeps_codes) return convert_codes(source, file, given, report, progress);
     ConvertedMapFile result;
-    NormalMapConversion conversion = given;
-    const ImageInfo info = SampleRows(source).info();
-    if (conversion.width == 0 && conversion.height == 0) {
-        conversion.width = info.width;
-        conversion.height = info.height;
-    }
-    const bool is_resized = conversion.width != info.width || conversion.height != info.height ||
-                            conversion.resize.repeat != glm::dvec2(1.0);
-    std::optional<Resampling> resampling;
-    Overlap overlap;
-    // The rows of a band also have no more texels of the source than a band.
-    int band_rows = rows_per_band(conversion.width, conversion.texels_per_band);
-    if (is_resized) {
-        check_resize(conversion.width, conversion.height, conversion.resize);
-        resampling.emplace(info.width, info.height, conversion.width, conversion.height,
-                           conversion.resize);
-        overlap = overlap_of(*resampling, info.height, conversion.height, conversion.resize.wrap.y);
-        const double scale = static_cast<double>(info.height) / conversion.height;
-        const int of_source = rows_per_band(info.width, conversion.texels_per_band);
-        band_rows = std::clamp(static_cast<int>(of_source / scale), 1, band_rows);
-    }
-    Reports reports;
-    DecodedRows decoded(source, conversion, overlap.tail, reports, result.times);
-    std::optional<ResizedRows> resized;
-    if (resampling)
-        resized.emplace(decoded, *resampling, overlap, conversion, reports, result.times);
+    ConvertedBands bands(source, given, result.times);
+    const NormalMapConversion& conversion = bands.conversion();
+    NormalMapFormat format = conversion.format;
+    format.green = Green::up;
     Report of_writing;
-    write_bands(file, shape_of(conversion, decoded.has_alpha()), band_rows, conversion,
+    write_bands(file, shape_of(conversion, bands.has_alpha()), bands.band_rows(), conversion,
                 result.times, of_writing, progress, [&](int first, int count) {
-                    NormalBand band = resized ? resized->next(count) : decoded.next(count);
+                    const NormalBand band = bands.next(first, count);
                     return timed(result.times.convert, [&] {
-                        return encoded(std::move(band), first, conversion, reports);
+                        Image codes = encode_normal_rows(band.normals, format, first,
+                                                         bands.reports().encoded);
+                        return band.alpha ? with_alpha(codes, *band.alpha) : codes;
                     });
                 });
-    if (!conversion.rebuild_z) result.lengths = range_of(decoded.lengths());
-    reports.merge_into(report, conversion.detail);
+    result.lengths = bands.lengths();
+    bands.reports().merge_into(report, conversion.detail);
     report.merge(of_writing);
+    return result;
+}
+
+EncodedMapFile encode_normal_map_file(const NormalMapSource& source,
+                                      const NormalMapConversion& conversion,
+                                      const NormalTextureOptions& options, Report& report,
+                                      const std::function<void(double)>& progress) {
+    EncodedMapFile result;
+    ConvertedBands bands(source, conversion, result.times);
+    const int width = bands.conversion().width;
+    const int height = bands.conversion().height;
+    NormalTextureEncoder encoder(width, height, bands.has_alpha(), options);
+    for (int first = 0; first < height; first += bands.band_rows()) {
+        const NormalBand band = bands.next(first, std::min(bands.band_rows(), height - first));
+        result.times.convert += 1e3 * seconds_of([&] {
+                                    encoder.add(band.normals, band.alpha ? &*band.alpha : nullptr);
+                                });
+        if (progress) progress(static_cast<double>(first + band.normals.height) / height);
+    }
+    bands.reports().merge_into(report, conversion.detail);
+    result.times.convert += 1e3 * seconds_of([&] { result.encoded = encoder.finish(report); });
+    result.lengths = bands.lengths();
     return result;
 }
 

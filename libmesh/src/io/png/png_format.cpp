@@ -2,6 +2,7 @@
 // Chunks, filters, checksums and decompression of PNG files. The loops that apply filters are
 // compiled for several vector widths. This is the only file that uses libdeflate and ISA-L.
 #include "io/png/png_format.h"
+#include "compiler.h"
 #include "portable_math.h"
 
 #include <isa-l/igzip_lib.h>
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -39,52 +41,80 @@ void append_chunk(std::string& file, std::string_view type, std::string_view dat
 
 namespace {
 
-int magnitude(int value) {
+// --- Undoing filters: each texel needs the one before it, so its bytes are processed at once ---
+
+/// The bytes of a texel, up to eight, as numbers of 16 bits.
+using Texel = Vector<std::int16_t, 16>;
+
+using PackedTexel = Vector<std::uint8_t, 8>;
+
+// Integers, because a load of more bytes than the last store wrote waits for that store.
+template <std::size_t Step>
+RELIEF_INLINE Texel load_texel(const std::uint8_t* bytes) {
+    std::uint64_t packed = 0;
+    for (std::size_t k = 0; k < Step; ++k)
+        packed |= std::uint64_t{bytes[k]} << (8 * k);
+    return __builtin_convertvector(std::bit_cast<PackedTexel>(packed), Texel);
+}
+
+template <std::size_t Step>
+RELIEF_INLINE void store_texel(const Texel& texel, std::uint8_t* bytes) {
+    const auto packed = std::bit_cast<std::uint64_t>(__builtin_convertvector(texel, PackedTexel));
+    for (std::size_t k = 0; k < Step; ++k)
+        bytes[k] = static_cast<std::uint8_t>(packed >> (8 * k));
+}
+
+RELIEF_INLINE Texel magnitude(const Texel& value) {
     return value < 0 ? -value : value;
 }
 
 /// Returns the nearest to left + above - upper left of left, above and upper left; ties: in this
 /// order.
-int paeth_prediction(int left, int above, int upper_left) {
-    const int from_left = magnitude(above - upper_left);
-    const int from_above = magnitude(left - upper_left);
-    const int from_corner = magnitude(left + above - 2 * upper_left);
-    const int other = from_above <= from_corner ? above : upper_left;
-    const int other_distance = from_above <= from_corner ? from_above : from_corner;
+RELIEF_INLINE Texel paeth_prediction(const Texel& left, const Texel& above,
+                                     const Texel& upper_left) {
+    const Texel across = above - upper_left;
+    const Texel down = left - upper_left;
+    const Texel from_left = magnitude(across);
+    const Texel from_above = magnitude(down);
+    const Texel from_corner = magnitude(across + down);
+    const Texel other = from_above <= from_corner ? above : upper_left;
+    const Texel other_distance = from_above <= from_corner ? from_above : from_corner;
     return from_left <= other_distance ? left : other;
 }
 
-/// Processes a row texel by texel; calls `predict(left, above, upper left)` for each byte.
+/// Processes a row texel by texel; `predict(left, above, upper left)` returns the prediction.
 template <std::size_t Step, typename Predict>
-void add_prediction(std::uint8_t* row, const std::uint8_t* above, std::size_t size,
-                    Predict predict) {
-    std::array<int, Step> left{};
-    std::array<int, Step> corner{};
-    for (std::size_t at = 0; at < size; at += Step) {
-        for (std::size_t k = 0; k < Step; ++k) {
-            const int up = above[at + k];
-            left[k] = (row[at + k] + predict(left[k], up, corner[k])) & 0xFF;
-            corner[k] = up;
-            row[at + k] = static_cast<std::uint8_t>(left[k]);
-        }
+RELIEF_INLINE void add_prediction(std::uint8_t* row, const std::uint8_t* above, std::size_t size,
+                                  Predict predict) {
+    Texel left{};
+    Texel corner{};
+    for (std::size_t at = 0; at + Step <= size; at += Step) {
+        const Texel up = load_texel<Step>(above + at);
+        left = (load_texel<Step>(row + at) + predict(left, up, corner)) & 0xFF;
+        corner = up;
+        store_texel<Step>(left, row + at);
     }
 }
 
 template <std::size_t Step>
-bool undo(std::uint8_t filter, std::uint8_t* row, const std::uint8_t* above, std::size_t size) {
+RELIEF_INLINE bool undo_loop(std::uint8_t filter, std::uint8_t* row, const std::uint8_t* above,
+                             std::size_t size) {
     switch (filter) {
         case 0:
             return true;
         case 1:
-            add_prediction<Step>(row, above, size, [](int left, int, int) { return left; });
+            add_prediction<Step>(
+                row, above, size,
+                [](const Texel& left, const Texel&, const Texel&) { return left; });
             return true;
         case 2:
             for (std::size_t i = 0; i < size; ++i)
                 row[i] = static_cast<std::uint8_t>(row[i] + above[i]);
             return true;
         case 3:
-            add_prediction<Step>(row, above, size,
-                                 [](int left, int up, int) { return (left + up) >> 1; });
+            add_prediction<Step>(
+                row, above, size,
+                [](const Texel& left, const Texel& up, const Texel&) { return (left + up) >> 1; });
             return true;
         case paeth_filter:
             add_prediction<Step>(row, above, size, paeth_prediction);
@@ -165,23 +195,41 @@ RELIEF_TARGET_512 void subtract_512(Byte filter, const Rows& rows) {
     subtract_loop(filter, rows);
 }
 
+template <std::size_t Step>
+[[gnu::noinline]] bool undo_any(std::uint8_t filter, std::uint8_t* row, const std::uint8_t* above,
+                                std::size_t size) {
+    return undo_loop<Step>(filter, row, above, size);
+}
+template <std::size_t Step>
+RELIEF_TARGET_256 bool undo_256(std::uint8_t filter, std::uint8_t* row, const std::uint8_t* above,
+                                std::size_t size) {
+    return undo_loop<Step>(filter, row, above, size);
+}
+
+template <std::size_t Step>
+bool undo(std::uint8_t filter, std::span<std::uint8_t> row, std::span<const std::uint8_t> above) {
+    const bool has_256 = best_vector_target() != VectorTarget::any;
+    return (has_256 ? undo_256<Step> : undo_any<Step>)(filter, row.data(), above.data(),
+                                                       row.size());
+}
+
 }  // namespace
 
 bool undo_filter(std::uint8_t filter, std::size_t step, std::span<std::uint8_t> row,
                  std::span<const std::uint8_t> above) {
     switch (step) {
         case 1:
-            return undo<1>(filter, row.data(), above.data(), row.size());
+            return undo<1>(filter, row, above);
         case 2:
-            return undo<2>(filter, row.data(), above.data(), row.size());
+            return undo<2>(filter, row, above);
         case 3:
-            return undo<3>(filter, row.data(), above.data(), row.size());
+            return undo<3>(filter, row, above);
         case 4:
-            return undo<4>(filter, row.data(), above.data(), row.size());
+            return undo<4>(filter, row, above);
         case 6:
-            return undo<6>(filter, row.data(), above.data(), row.size());
+            return undo<6>(filter, row, above);
         default:
-            return undo<8>(filter, row.data(), above.data(), row.size());
+            return undo<8>(filter, row, above);
     }
 }
 

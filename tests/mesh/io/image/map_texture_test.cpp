@@ -169,6 +169,9 @@ TEST(MapTexture, SampledErrorsAreCloseToAllErrors) {
     const MapTexture sampled = encode_map_texture(map, options);
     EXPECT_EQ(sampled.levels[0].error.count, 8192U);
     EXPECT_NEAR(sampled.levels[0].error.rms, all, 0.05 * all);
+    ASSERT_TRUE(sampled.levels[0].confidence);
+    EXPECT_NEAR(sampled.levels[0].error.rms, all, sampled.levels[0].confidence->rms_margin);
+    EXPECT_LT(sampled.levels[0].confidence->rms_margin, 0.1 * all);
     options.measured_texels = 0;
     EXPECT_EQ(encode_map_texture(map, options).levels[0].error.count, 0U);
 }
