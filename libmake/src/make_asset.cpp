@@ -171,6 +171,8 @@ void Maker::decimate(Report& report) {
     }
     DecimateOptions limits;
     limits.triangles = options_.triangles;
+    // The maps have the normals of the source, so that only distances and silhouettes count.
+    limits.goal = DecimateGoal::distance;
     limits.fit_positions = true;
     limits.frames.normals = NormalWeight::angle;
     limits.frames.tangents = TangentMethod::none;

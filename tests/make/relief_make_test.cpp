@@ -9,6 +9,8 @@
 #include <string>
 
 #include "relief/mesh/image_file.h"
+#include "relief/mesh/mesh_file.h"
+#include "relief/mesh/topology.h"
 #include "support/labels.h"
 #include "tools/linked_tools.h"
 #include "tools/workplace.h"
@@ -51,6 +53,25 @@ TEST(MakeCommand, MakesAnAssetThatPassesTheChecks) {
     }
     EXPECT_EQ(stages, (std::vector<std::string>{"read", "repair", "decimate", "unwrap", "remesh",
                                                 "frames", "bake", "write", "verify"}));
+}
+
+TEST(MakeCommand, ReducesForSmallDistancesBecauseMapsHaveTheNormals) {
+    const Workplace workplace;
+    const ProgramResult result = workplace.run(
+        "relief make data/urn-high.ply out/urn.glb --triangles 1000 --size 64 --padding 2 "
+        "--occlusion-rays 0 --keep-stages out/stages");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    ASSERT_EQ(workplace.run("relief-mesh decimate data/urn-high.ply out/other.ply --triangles 1000")
+                  .exit_code,
+              0);
+    ASSERT_EQ(
+        workplace.run("relief-mesh process out/stages/02-decimate.glb out/asset.ply").exit_code, 0);
+    const Mesh source = read_mesh(workplace / "data/urn-high.ply").mesh;
+    const auto largest = [&](const char* file) {
+        const Mesh mesh = read_mesh(workplace / file).mesh;
+        return surface_distance(source, mesh).from_a.max;
+    };
+    EXPECT_LT(largest("out/asset.ply"), 0.8 * largest("out/other.ply"));
 }
 
 TEST(MakeCommand, WritesTheSameBytesForAnyNumberOfThreads) {
