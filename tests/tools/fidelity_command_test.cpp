@@ -55,14 +55,14 @@ TEST(FidelityCommand, MeasuresAChainAgainstItsSource) {
     // The views on request follow the two others. One shows the square from its front, where half
     // of it is missing, and one from its edge, where nothing is seen.
     ASSERT_EQ(half["views"].size(), 4U);
-    const auto view = [&](std::size_t number) {
+    const auto numbered = [&](std::size_t number) {
         return *std::ranges::find_if(half["views"],
                                      [&](const json& one) { return one["view"] == number; });
     };
-    EXPECT_EQ(view(2)["from"], json({0.0, 0.0, 1.0}));
-    EXPECT_GT(view(2)["silhouette_pixels"], 1.0);
-    EXPECT_NEAR(view(3)["from"][0].get<double>(), 1.0, 1e-6);
-    EXPECT_LT(view(3)["silhouette_pixels"], view(2)["silhouette_pixels"]);
+    EXPECT_EQ(numbered(2)["from"], json({0.0, 0.0, 1.0}));
+    EXPECT_GT(numbered(2)["silhouette_pixels"], 1.0);
+    EXPECT_NEAR(numbered(3)["from"][0].get<double>(), 1.0, 1e-6);
+    EXPECT_LT(numbered(3)["silhouette_pixels"], numbered(2)["silhouette_pixels"]);
     EXPECT_EQ(half["distance_to_source"]["max"], 0.0);
     const auto largest = [&](std::size_t view) {
         const json& flip = half["views"][view]["flip"];
