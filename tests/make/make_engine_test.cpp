@@ -39,7 +39,7 @@ std::vector<std::uint8_t> codes_in(const std::filesystem::path& file) {
     return {codes.begin(), codes.end()};
 }
 
-std::vector<std::string> names_of(const std::vector<std::filesystem::path>& files) {
+std::vector<std::string> file_names(const std::vector<std::filesystem::path>& files) {
     std::vector<std::string> names;
     for (const std::filesystem::path& file : files)
         names.push_back(file.filename().string());
@@ -50,8 +50,8 @@ TEST(EngineMaps, HaveTheChannelsOfUnity) {
     const test::TemporaryDirectory folder;
     const std::vector<std::filesystem::path> files =
         write_map_files(Engine::unity, folder / "rock.glb", asset_of_one_texel());
-    EXPECT_THAT(names_of(files), ElementsAre("rock_Normal.png", "rock_MaskMap.png",
-                                             "rock_BaseMap.png", "rock_Emission.png"));
+    EXPECT_THAT(file_names(files), ElementsAre("rock_Normal.png", "rock_MaskMap.png",
+                                               "rock_BaseMap.png", "rock_Emission.png"));
     EXPECT_THAT(codes_in(folder / "rock_Normal.png"), ElementsAre(128, 200, 255));
     // Metalness, occlusion, 0, smoothness.
     EXPECT_THAT(codes_in(folder / "rock_MaskMap.png"), ElementsAre(30, 90, 0, 255 - 60));
@@ -69,7 +69,7 @@ TEST(EngineMaps, HaveTheFactorsOfPropertiesWithoutAMap) {
     const test::TemporaryDirectory folder;
     const std::vector<std::filesystem::path> files =
         write_map_files(Engine::unreal, folder / "rock.glb", asset);
-    EXPECT_THAT(names_of(files), ElementsAre("rock_N.png", "rock_ORM.png", "rock_D.png"));
+    EXPECT_THAT(file_names(files), ElementsAre("rock_N.png", "rock_ORM.png", "rock_D.png"));
     EXPECT_THAT(codes_in(folder / "rock_N.png"), ElementsAre(128, 55, 255)) << "green is down";
     EXPECT_THAT(codes_in(folder / "rock_ORM.png"), ElementsAre(90, 51, 255));
 }
@@ -84,7 +84,7 @@ TEST(EngineMaps, AreOnlyFurtherLayersForGltf) {
     for (const Engine engine : {Engine::gltf, Engine::godot}) {
         const std::vector<std::filesystem::path> files =
             write_map_files(engine, folder / "rock.glb", asset);
-        EXPECT_THAT(names_of(files), ElementsAre("rock_height.png"));
+        EXPECT_THAT(file_names(files), ElementsAre("rock_height.png"));
         EXPECT_EQ(files, map_files_of(engine, options, folder / "rock.glb"));
     }
     const ImageInfo info = read_image_info(folder / "rock_height.png");

@@ -28,9 +28,9 @@ TEST(MakePage, HasPicturesTablesAndTheCommandAndLoadsNothing) {
     const Workplace workplace;
     const ProgramResult result = workplace.run(
         "relief make data/urn-high.ply out/urn.glb --triangles 400 --size 64 --padding 2 "
-        "--occlusion-rays 2 --lods 1 --report out/urn.html");
+        "--occlusion-rays 2 --lods 1 --layers height --report out/urn.html");
     ASSERT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_EQ(workplace.outputs(), "urn.glb urn.html");
+    EXPECT_EQ(workplace.outputs(), "urn.glb urn.html urn_height.png");
     const std::string page = workplace.read("out/urn.html");
     EXPECT_THAT(page,
                 HasSubstr("urn-high.ply: 26800 triangles became 400 triangles, with maps of 64 "
@@ -39,11 +39,12 @@ TEST(MakePage, HasPicturesTablesAndTheCommandAndLoadsNothing) {
                        "relief make data/urn-high.ply -o out/urn.glb --triangles 400 "
                        "--size 64x64 --padding 2 --crease 60"),
               1U);
-    for (const char* text : {"<th scope=\"row\">decimate</th>", "<th scope=\"row\">LOD1</th>",
-                             "normals, 64 x 64", "occlusion, 16 x 16", "alt=\"source\""})
+    for (const char* text :
+         {"<th scope=\"row\">decimate</th>", "<th scope=\"row\">LOD1</th>", "normals, 64 x 64",
+          "occlusion, 16 x 16", "height map, 64 x 64", "alt=\"source\""})
         EXPECT_GE(count_of(page, text), 1U);
-    // Four of the models, the charts and two maps.
-    EXPECT_EQ(count_of(page, "src=\"data:image/png;base64,"), 7U);
+    // Four of the models, the charts and three maps.
+    EXPECT_EQ(count_of(page, "src=\"data:image/png;base64,"), 8U);
     for (const char* address : {"http://", "https://"})
         EXPECT_EQ(page.find(address), std::string::npos) << address;
     EXPECT_EQ(page.find("{{"), std::string::npos);

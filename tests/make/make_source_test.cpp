@@ -19,7 +19,7 @@ using test::ProgramResult;
 using test::Workplace;
 using testing::HasSubstr;
 
-constexpr const char* quick = " --triangles 400 --size 32 --padding 2 --occlusion-rays 2";
+constexpr const char* few_texels = " --triangles 400 --size 32 --padding 2 --occlusion-rays 2";
 
 /// A glTF file of two squares with a material each, which tests may change.
 json two_squares(const Workplace& workplace) {
@@ -160,7 +160,7 @@ TEST(MakeCommandMaterials, AreInTheAssetTheFilesAndTheReport) {
     const ProgramResult result =
         workplace.run(std::string("relief make out/two.gltf out/a.glb --for unreal --layers "
                                   "height,curvature --report out/a.json") +
-                      quick);
+                      few_texels);
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("occlusion, roughness, metalness 32 x 32"));
     EXPECT_THAT(result.out, HasSubstr("without a map: color (1, 0, 0)"));
@@ -181,13 +181,15 @@ TEST(MakeCommandMaterials, AreInTheAssetTheFilesAndTheReport) {
 TEST(MakeCommandMaterials, AreThoseOfAllFilesOfAModel) {
     const Workplace workplace;
     workplace.write_square("out/a.obj");
-    workplace.write("out/b.obj", "v 2 -1 0\nv 4 -1 0\nv 4 1 0\nv 2 1 0\nf 1 2 3 4\n");
+    workplace.write("out/b.obj",
+                    "v 2 -1 0\nv 4 -1 0\nv 4 1 0\nv 2 1 0\nvn 0 0 1\nf 1//1 2//1 3//1 4//1\n");
     const ProgramResult result =
-        workplace.run(std::string("relief make out/a.obj out/c.glb --with out/b.obj") + quick);
+        workplace.run(std::string("relief make out/a.obj out/c.glb --with out/b.obj") + few_texels);
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("out/a.obj and 1 more file: Wavefront OBJ, 4 triangles"));
     const Mesh mesh = test::read_document(workplace / "out/c.glb").mesh({0, 0});
     EXPECT_EQ(bounds_of(mesh).max.x, 4.0F);
+    EXPECT_THAT(result.out, HasSubstr("1 x normals of a part beside one without (part 1)"));
     test::expect_refusals(
         workplace, "relief", "c.glb",
         {{"relief make data/vase.obj out/c.glb --with none.obj", 1, "none.obj: no such file"},

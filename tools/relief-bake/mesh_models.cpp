@@ -243,9 +243,8 @@ void HighTextures::add_texture(const std::filesystem::path& model, const MapAppe
     if (find_texture(source, slot) == nullptr) return;
     if (source.texcoords_of(slot).set != set_of_meshes(source)) {
         const char* name = slot == TextureSlot::base_color ? "color" : slot_info(slot).name;
-        report.add(
-            fmt::format("{} texture with other texture coordinates than the normal map", name),
-            "material", material, "is left out");
+        report.add(fmt::format("{} texture on another texture coordinate set", name), "material",
+                   material, "is left out");
         return;
     }
     target = texture(model, appearance, source, slot);

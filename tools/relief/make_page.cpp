@@ -5,8 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstdlib>
 #include <span>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "common/html.h"
 #include "common/text.h"
@@ -264,6 +268,22 @@ std::string PageWriter::levels() const {
                rows);
 }
 
+/// Returns a further layer with 8 bits. Its values fill the codes, with 0 in the middle.
+Image shown(const Image& map) {
+    const auto* codes = std::get_if<std::vector<std::uint16_t>>(&map.samples);
+    if (codes == nullptr) return map;
+    constexpr int middle = 32768;
+    int largest = 1;
+    for (const std::uint16_t code : *codes)
+        largest = std::max(largest, std::abs(code - middle));
+    Image picture = map;
+    std::vector<std::uint8_t> samples(codes->size());
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        samples[i] = static_cast<std::uint8_t>(128 + 127 * ((*codes)[i] - middle) / largest);
+    picture.samples = std::move(samples);
+    return picture;
+}
+
 std::string PageWriter::maps() const {
     constexpr int max_side = 512;
     const make::Asset& asset = made_.asset;
@@ -280,7 +300,7 @@ std::string PageWriter::maps() const {
                     : "the texture coordinates of the source";
     add(draw_charts(asset, glm::max(size / factor, glm::ivec2(1))), charts);
     for (const make::AssetMap& map : make::maps_of(asset)) {
-        add(*map.image,
+        add(map.slots.empty() ? shown(*map.image) : *map.image,
             fmt::format("{}, {} x {}{}", map.content, map.image->width, map.image->height,
                         map.image->bits() == 8 ? "" : fmt::format(", {} bits", map.image->bits())));
     }

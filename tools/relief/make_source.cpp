@@ -205,6 +205,16 @@ std::size_t triangles_of(const MapModel& model) {
     return count;
 }
 
+/// A joined mesh has normals only if all parts have them.
+void report_lost_normals(const std::vector<MapModelPart>& parts, Report& report) {
+    const auto has_normals = [](const MapModelPart& part) { return !part.mesh.normals.empty(); };
+    if (std::ranges::all_of(parts, has_normals)) return;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (has_normals(parts[i]))
+            report.add("normals of a part beside one without", "part", i, "are computed anew");
+    }
+}
+
 /// The models of a source.
 struct SourceModels {
     std::vector<std::filesystem::path> files;
@@ -271,6 +281,7 @@ make::AssetSource read_source(std::span<const std::filesystem::path> files, Sour
     make::AssetSource source;
     source.origin = models.origin;
     add_missing_texcoords(models.parts);
+    report_lost_normals(models.parts, report);
     source.mesh = about(file, [&] { return joined(std::move(models.parts)); });
     facts.vertices = source.mesh.positions.size();
     HighTextures textures;

@@ -239,7 +239,7 @@ class FactorWriter {
             remove(path);
             return;
         }
-        json_[Json::json_pointer("/" + path)] = value;
+        json_[Json::json_pointer(fmt::format("/{}", path))] = value;
         if (path.starts_with(extensions)) declare(extension_of(path));
     }
 
@@ -266,8 +266,9 @@ class FactorWriter {
     void remove(const std::string& path) {
         if (find_path(json_, path) == nullptr) return;
         const std::size_t end = path.rfind('/');
-        Json& holder =
-            end == std::string::npos ? json_ : json_[Json::json_pointer("/" + path.substr(0, end))];
+        Json& holder = end == std::string::npos
+                           ? json_
+                           : json_[Json::json_pointer(fmt::format("/{}", path.substr(0, end)))];
         holder.erase(end == std::string::npos ? path : path.substr(end + 1));
         if (!path.starts_with(extensions) || !holder.empty()) return;
         const std::string extension = extension_of(path);
