@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <utility>
 
 #include "bake_stage.h"
+#include "geometry/triangle_stacks.h"
+#include "geometry/weld.h"
 #include "relief/make/asset.h"
 #include "relief/mesh/frames.h"
 #include "remesh_judgment.h"
@@ -18,6 +21,42 @@ namespace {
 
 constexpr int min_size = 16;
 constexpr int max_size = 16384;
+
+/// Returns whether triangles are replaced only if that is better.
+bool judges_remeshing(const AssetOptions& options) {
+    return options.remesh == Remeshing::automatic && !options.keep_texcoords && !options.start;
+}
+
+/// Stages that can be left out, and a last one that cannot.
+constexpr std::array<std::string_view, 4> start_order = {"decimate", "unwrap", "frames", "bake"};
+
+/// Returns whether AssetOptions::start leaves out a stage.
+bool is_left_out(const AssetOptions& options, std::string_view stage) {
+    if (!options.start) return false;
+    return std::ranges::find(start_order, stage) <
+           std::ranges::find(start_order, options.start->stage);
+}
+
+/// \throws InvalidInput if the stages cannot begin with the mesh
+void check(const AssetStart& start, bool keeps_texcoords) {
+    if (std::ranges::find(start_order, start.stage) == start_order.end())
+        throw InvalidInput(fmt::format("no job can continue at a stage \"{}\"", start.stage));
+    if (start.stage == "unwrap" && keeps_texcoords)
+        throw InvalidInput("there is no stage \"unwrap\", because texture coordinates are kept");
+    validate(start.mesh);
+    const auto require = [&](bool is_there, const char* what) {
+        if (!is_there) {
+            throw InvalidInput(
+                fmt::format("the mesh for the stage \"{}\" has no {}", start.stage, what));
+        }
+    };
+    require(!start.mesh.triangles.empty(), "triangles");
+    if (start.stage == "frames" || start.stage == "bake")
+        require(!start.mesh.texcoords.empty(), "texture coordinates");
+    if (start.stage != "bake") return;
+    require(!start.mesh.normals.empty(), "normals");
+    require(!start.mesh.tangents.empty(), "tangents");
+}
 
 void check(const AssetOptions& options) {
     if (options.triangles < 1)
@@ -42,11 +81,7 @@ void check(const AssetOptions& options) {
     }
     if (options.remesh == Remeshing::always && options.keep_texcoords)
         throw InvalidInput("a mesh that is remeshed cannot keep its texture coordinates");
-}
-
-/// Returns whether triangles are replaced only if that is better.
-bool judges_remeshing(const AssetOptions& options) {
-    return options.remesh == Remeshing::automatic && !options.keep_texcoords;
+    if (options.start) check(*options.start, options.keep_texcoords);
 }
 
 /// Runs stages and collects their reports.
@@ -63,6 +98,8 @@ class Maker {
     void remesh(Report& report);
     void judge(Report& report);
     [[nodiscard]] RemeshOptions grid() const;
+    void begin(const AssetStart& start);
+    [[nodiscard]] const Mesh& dense_surface() const;
     void decimate(Report& report);
     void separate_sides(Report& report);
     void unwrap_mesh(Report& report);
@@ -156,12 +193,34 @@ void Maker::separate_sides(Report& report) {
                "has sides that are a millionth of its size apart");
 }
 
+/// Returns the triangles to decimate.
+const Mesh& Maker::dense_surface() const {
+    if (closed_) return *closed_;
+    return options_.start ? options_.start->mesh : high_;
+}
+
+/// Takes the mesh of a stage that is left out.
+void Maker::begin(const AssetStart& start) {
+    if (start.stage == "decimate") return;
+    asset_.mesh = start.mesh;
+    asset_.mesh.name = source_.name;
+    const bool has_sides = options_.repair && !start.is_remeshed &&
+                           !relief::detail::triangle_stacks(
+                                high_.triangles, relief::detail::weld_positions(high_.positions))
+                                .empty();
+    if (has_sides) {
+        Report known;
+        high_ = repaired(high_, *options_.repair, known).mesh;
+    }
+}
+
 void Maker::decimate(Report& report) {
     Mesh surface;
-    surface.positions = closed_ ? closed_->positions : high_.positions;
-    surface.triangles = closed_ ? closed_->triangles : high_.triangles;
+    const Mesh& dense = dense_surface();
+    surface.positions = dense.positions;
+    surface.triangles = dense.triangles;
     if (options_.keep_texcoords) {
-        surface.texcoords = high_.texcoords;
+        surface.texcoords = dense.texcoords;
         if (surface.texcoords.empty())
             throw InvalidInput("has no texture coordinates that can be kept");
     }
@@ -178,7 +237,8 @@ void Maker::decimate(Report& report) {
     limits.frames.tangents = TangentMethod::none;
     asset_.mesh = decimated(surface, limits, report).mesh;
     if (asset_.mesh.triangles.empty()) throw InvalidInput("no triangle is left after decimation");
-    if (options_.repair && !closed_ && report.count("double-sided triangle") > 0)
+    const bool is_remeshed = closed_ || (options_.start && options_.start->is_remeshed);
+    if (options_.repair && !is_remeshed && report.count("double-sided triangle") > 0)
         separate_sides(report);
     const double ratio =
         static_cast<double>(asset_.mesh.triangles.size()) / static_cast<double>(options_.triangles);
@@ -230,8 +290,9 @@ void Maker::run_stage(const std::string& name, void (Maker::*work)(Report&)) {
 
 /// Decimates and unwraps.
 void Maker::reduce() {
-    run_stage("decimate", &Maker::decimate);
-    if (!options_.keep_texcoords) run_stage("unwrap", &Maker::unwrap_mesh);
+    if (!is_left_out(options_, "decimate")) run_stage("decimate", &Maker::decimate);
+    if (!options_.keep_texcoords && !is_left_out(options_, "unwrap"))
+        run_stage("unwrap", &Maker::unwrap_mesh);
 }
 
 Asset Maker::run() {
@@ -240,13 +301,15 @@ Asset Maker::run() {
     asset_.name = source_.name;
     asset_.origin = source_.origin;
     run_stage("repair", &Maker::repair);
-    if (options_.remesh == Remeshing::always) run_stage("remesh", &Maker::remesh);
+    if (options_.start) begin(*options_.start);
+    if (options_.remesh == Remeshing::always && !options_.start)
+        run_stage("remesh", &Maker::remesh);
     reduce();
     if (judges_remeshing(options_)) {
         run_stage("remesh", &Maker::judge);
         if (closed_) reduce();
     }
-    run_stage("frames", &Maker::compute_frames);
+    if (!is_left_out(options_, "frames")) run_stage("frames", &Maker::compute_frames);
     run_stage("bake", &Maker::bake);
     return std::move(asset_);
 }
@@ -255,11 +318,12 @@ Asset Maker::run() {
 
 std::vector<std::string> stages_of(const AssetOptions& options) {
     std::vector<std::string> stages = {"repair"};
-    if (options.remesh == Remeshing::always) stages.emplace_back("remesh");
+    if (options.remesh == Remeshing::always && !options.start) stages.emplace_back("remesh");
     stages.emplace_back("decimate");
     if (!options.keep_texcoords) stages.emplace_back("unwrap");
     if (judges_remeshing(options)) stages.emplace_back("remesh");
     stages.insert(stages.end(), {"frames", "bake"});
+    std::erase_if(stages, [&](const std::string& stage) { return is_left_out(options, stage); });
     return stages;
 }
 

@@ -10,11 +10,8 @@
 #include "files.h"
 
 namespace relief::tools {
-namespace {
 
-/// Returns the hash of a file's bytes; "missing" for a file that cannot be
-/// read.
-std::string hash_of(const std::filesystem::path& file) {
+std::string file_hash(const std::filesystem::path& file) {
     try {
         const relief::detail::FileContents contents(file);
         std::uint64_t hash = 0xCBF29CE484222325ULL;
@@ -26,10 +23,12 @@ std::string hash_of(const std::filesystem::path& file) {
     }
 }
 
+namespace {
+
 Json hashes_of(const std::vector<std::filesystem::path>& files) {
     Json hashes = Json::object();
     for (const std::filesystem::path& file : files)
-        hashes[file.string()] = hash_of(file);
+        hashes[file.string()] = file_hash(file);
     return hashes;
 }
 
@@ -37,7 +36,7 @@ Json hashes_of(const std::vector<std::filesystem::path>& files) {
 bool are_unchanged(const Json& hashes) {
     if (!hashes.is_object() || hashes.empty()) return false;
     for (const auto& [file, hash] : hashes.items()) {
-        if (hash != hash_of(file)) return false;
+        if (hash != file_hash(file)) return false;
     }
     return true;
 }

@@ -22,6 +22,7 @@
 #include "make_loss_meter.h"
 #include "make_remesh.h"
 #include "make_stages.h"
+#include "make_start.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/map_description.h"
@@ -249,6 +250,11 @@ void FileMaker::read() {
     source_ = read_source(sources_of(request_, job_), made_.source, made_.findings);
     source_.name = job_.output.stem().string();
     made_.inputs = names_of(opened.files());
+    if (request_.from.empty()) return;
+    Report report;
+    options_.start = read_start(*request_.stages_folder, request_.from, options_, made_.inputs,
+                                source_.origin, report);
+    made_.findings.add("read", report);
 }
 
 /// Makes, writes, verifies and, if requested, measures the asset.
@@ -259,6 +265,10 @@ void FileMaker::make_once() {
     if (request_.stages_folder) {
         kept.emplace(*request_.stages_folder, options_);
         options_.take_mesh = [&](std::string_view stage, const Mesh& mesh) {
+            // The files of earlier stages stay as they are.
+            if (stage == "repair" && options_.start) return;
+            const std::filesystem::path file = kept->mesh_file(stage);
+            std::erase(made_.files, file);  // Of a surface that was replaced.
             made_.files.push_back(kept->write_mesh(stage, mesh, source_.origin, of_kept));
         };
     }
@@ -276,6 +286,8 @@ void FileMaker::make_once() {
         if (kept) {
             for (const std::filesystem::path& file : kept->write_maps(made_.asset))
                 made_.files.push_back(file);
+            made_.files.push_back(
+                write_stage_record(*request_.stages_folder, made_.asset, options_, made_.inputs));
         }
         made_.levels = about(job_.input, [&] {
             return make::write_asset(job_.output, made_.asset, options_.levels, report);
@@ -394,6 +406,7 @@ std::vector<std::filesystem::path> outputs_of(const MakeRequest& request,
         for (const std::filesystem::path& file :
              StageFiles(*request.stages_folder, request.asset).all())
             files.push_back(file);
+        files.push_back(*request.stages_folder / "stages.json");
     }
     return files;
 }

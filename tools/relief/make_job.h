@@ -30,6 +30,9 @@ struct MakeRequest {
     LossLimits limits;
     /// Gets the results of all stages (make_stages.h).
     std::optional<std::filesystem::path> stages_folder;
+    /// The stage at which the job continues with the files of `stages_folder` (make_start.h);
+    /// empty: it begins with the model.
+    std::string from;
 };
 
 /// What is known of the dense model after it is read.

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "make_job.h"
+#include "make_stages.h"
 
 namespace relief::tools {
 namespace {
@@ -120,6 +121,13 @@ std::vector<PlannedStage> plan_of(const MakeRequest& request, const make::AssetS
                                                    : ""),
                     costs.write * 2.0 * texels});
     plan.push_back({"verify", "read the asset back and compare it", costs.write * texels});
+    if (!request.from.empty()) {
+        std::erase_if(plan, [&](const PlannedStage& stage) {
+            return stage.name == "remesh" ||
+                   (stage.name != "repair" && stage.name != "write" && stage.name != "verify" &&
+                    stage_number(stage.name) < stage_number(request.from));
+        });
+    }
     return plan;
 }
 

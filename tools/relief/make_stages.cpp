@@ -21,6 +21,10 @@ constexpr auto stage_order = std::to_array<std::string_view>(
 
 }  // namespace
 
+int stage_number(std::string_view stage) {
+    return 1 + static_cast<int>(std::ranges::find(stage_order, stage) - stage_order.begin());
+}
+
 StageFiles::StageFiles(const std::filesystem::path& folder, const make::AssetOptions& options)
     : folder_(folder), stages_(make::stages_of(options)) {
     maps_ = {"normal", "occlusion", "color", "orm", "emission"};
@@ -29,8 +33,7 @@ StageFiles::StageFiles(const std::filesystem::path& folder, const make::AssetOpt
 }
 
 std::filesystem::path StageFiles::file_of(std::string_view stage, std::string_view ending) const {
-    const auto number = std::ranges::find(stage_order, stage) - stage_order.begin() + 1;
-    return folder_ / fmt::format("{:02}-{}{}", number, stage, ending);
+    return folder_ / fmt::format("{:02}-{}{}", stage_number(stage), stage, ending);
 }
 
 std::vector<std::filesystem::path> StageFiles::all() const {

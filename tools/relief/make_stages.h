@@ -15,6 +15,9 @@
 
 namespace relief::tools {
 
+/// Returns the number of a stage in the names of its files, from 1 on.
+int stage_number(std::string_view stage);
+
 /// The files in a folder: a mesh for each stage of make::stages_of(), "03-decimate.glb", and the
 /// maps with the names of make::maps_of(), "06-bake-normal.png". A stage has the same number in all
 /// jobs. "02-remesh.glb" exists only if the mesh was remeshed.
@@ -24,6 +27,10 @@ class StageFiles {
 
     /// All files that can be written.
     [[nodiscard]] std::vector<std::filesystem::path> all() const;
+
+    [[nodiscard]] std::filesystem::path mesh_file(std::string_view stage) const {
+        return file_of(stage, ".glb");
+    }
 
     /// Writes the mesh after a stage. \param report  counts values that glTF forbids
     /// \throws FileError \return the file

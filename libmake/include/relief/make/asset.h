@@ -45,6 +45,15 @@ struct AssetSource {
     GltfMaterial shared;
 };
 
+/// A mesh with which the stages continue, for example the edited result of a stage.
+struct AssetStart {
+    std::string stage;  ///< "decimate", "unwrap", "frames" or "bake": the first one after "repair".
+    /// Valid (mesh.h), relative to AssetSource::origin, with the attributes that the stages before
+    /// compute.
+    Mesh mesh;
+    bool is_remeshed = false;  ///< It comes from a closed surface around the source.
+};
+
 struct AssetOptions {
     /// The steps of the repair; absent: only triangles without area are removed, and those with a
     /// position that is not finite.
@@ -52,8 +61,10 @@ struct AssetOptions {
     /// Whether the triangles are replaced by a closed surface around them before decimation. With
     /// `keep_texcoords`, `automatic` means `never`.
     Remeshing remesh = Remeshing::automatic;
-    int resolution = 256;          ///< Of the grid (RemeshOptions::resolution).
-    bool shell = false;            ///< Sheets become shells (RemeshOptions::shell).
+    int resolution = 256;  ///< Of the grid (RemeshOptions::resolution).
+    bool shell = false;    ///< Sheets become shells (RemeshOptions::shell).
+    /// Leaves out "remesh" and the stages before a stage. Maps still show the source.
+    std::optional<AssetStart> start{};
     std::size_t triangles = 5000;  ///< The target number of triangles, at least 1.
     glm::ivec2 size{2048};         ///< Of the maps in texels, 16 to 16384 each.
     /// The distance of charts in texels; the maps are padded by as many.
@@ -85,7 +96,8 @@ struct AssetOptions {
 /// The names of the stages in their order: "repair", "remesh", "decimate", "unwrap", "frames",
 /// "bake". With Remeshing::automatic, "remesh" follows "unwrap", because it judges the result. If
 /// triangles are replaced then, "decimate" and "unwrap" run again.
-/// \param options  with keep_texcoords there is no "unwrap"; "remesh" is there if it can occur
+/// \param options  with keep_texcoords there is no "unwrap"; "remesh" is there if it can occur;
+///         `start` leaves out stages
 std::vector<std::string> stages_of(const AssetOptions& options);
 
 /// The findings of a stage.
@@ -184,7 +196,8 @@ VaryingProperties varying_properties(const Mesh& mesh, const AssetSource& source
 /// \return the same bytes for any number of threads
 /// \throws InvalidInput if an option is out of range, the mesh is not valid, no usable triangle is
 ///         left, texture coordinates are to be kept but absent or the mesh is remeshed, nothing is
-///         enclosed that can be remeshed, or no ray hits the source; Cancelled
+///         enclosed that can be remeshed, the stages cannot begin with the mesh of `start`, or no
+///         ray hits the source; Cancelled
 Asset make_asset(const AssetSource& source, const AssetOptions& options);
 
 /// Writes an asset with its maps inside as .glb or .gltf, with levels of detail (MSFT_lod).

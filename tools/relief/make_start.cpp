@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tests: tests/make/make_start_test.cpp.
+#include "make_start.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "common/command.h"
+#include "common/model_file.h"
+#include "files.h"
+#include "make_cache.h"
+#include "make_stages.h"
+#include "relief/mesh/gltf_document.h"
+#include "relief/mesh/model.h"
+
+namespace relief::tools {
+namespace {
+
+/// An option and the first stage whose file depends on it.
+struct StageOption {
+    std::string_view name;
+    std::string_view stage;
+    std::string value;
+};
+
+std::vector<StageOption> stage_options(const make::AssetOptions& options) {
+    const std::string crease =
+        options.crease_angle ? fmt::format("{:g}", *options.crease_angle * 180.0 / std::numbers::pi)
+                             : "none";
+    return {{"no-repair", "repair", fmt::format("{}", !options.repair.has_value())},
+            {"remesh", "remesh", enum_name(options.remesh)},
+            {"resolution", "remesh", fmt::format("{}", options.resolution)},
+            {"shell", "remesh", fmt::format("{}", options.shell)},
+            {"triangles", "decimate", fmt::format("{}", options.triangles)},
+            {"keep-uvs", "decimate", fmt::format("{}", options.keep_texcoords)},
+            {"size", "unwrap", fmt::format("{}x{}", options.size.x, options.size.y)},
+            {"padding", "unwrap", fmt::format("{}", options.padding)},
+            {"crease", "unwrap", crease}};
+}
+
+constexpr const char* record_name = "stages.json";
+constexpr const char* fresh = "run without --from";
+
+/// The stage whose file is the mesh with which a stage begins.
+std::string stage_before(const std::string& stage, const make::AssetOptions& options,
+                         bool is_remeshed) {
+    if (stage == "bake") return "frames";
+    if (stage == "frames") return options.keep_texcoords ? "decimate" : "unwrap";
+    if (stage == "unwrap") return "decimate";
+    return is_remeshed ? "remesh" : "repair";
+}
+
+/// Returns stages.json. \throws FileError if it is missing or damaged
+Json read_record(const std::filesystem::path& folder) {
+    const std::filesystem::path file = folder / record_name;
+    if (!std::filesystem::exists(file))
+        throw failure(file, "is missing, so that the files of --keep-stages cannot be checked",
+                      fresh);
+    Json record = Json::parse(relief::detail::read_file(file), nullptr, false);
+    const auto has_texts = [&](const char* name) {
+        const auto found = record.find(name);
+        return found != record.end() && found->is_object() &&
+               std::ranges::all_of(*found, [](const Json& value) { return value.is_string(); });
+    };
+    const bool is_sound = record.is_object() && has_texts("inputs") && has_texts("options") &&
+                          has_texts("files") && record.contains("remeshed") &&
+                          record.contains("version") && record["version"].is_string();
+    if (!is_sound) throw failure(file, "is damaged", fresh);
+    if (record["version"] != version()) {
+        throw failure(
+            file, fmt::format("was written by version {}", record["version"].get<std::string>()),
+            fresh);
+    }
+    return record;
+}
+
+/// \throws FileError if the model or an option of a stage up to `last` has changed
+void check_fresh(const std::filesystem::path& folder, const Json& record, std::string_view last,
+                 const make::AssetOptions& options,
+                 const std::vector<std::filesystem::path>& inputs) {
+    for (const std::filesystem::path& input : inputs) {
+        if (record["inputs"].value(input.string(), "") != file_hash(input)) {
+            throw failure(folder, fmt::format("is stale: {} has changed since", input.string()),
+                          fresh);
+        }
+    }
+    for (const StageOption& option : stage_options(options)) {
+        if (stage_number(option.stage) > stage_number(last)) continue;
+        const std::string before = record["options"].value(std::string(option.name), "unknown");
+        if (before != option.value) {
+            throw failure(folder,
+                          fmt::format("is stale: --{} was {}, and is {} now", option.name, before,
+                                      option.value),
+                          fresh);
+        }
+    }
+}
+
+/// \throws FileError if a file before `last` was edited, but not used
+void check_earlier_files(const StageFiles& files, const Json& record, std::string_view last) {
+    for (const std::string_view stage : {"repair", "remesh", "decimate", "unwrap"}) {
+        if (stage_number(stage) >= stage_number(last)) break;
+        const std::filesystem::path file = files.mesh_file(stage);
+        const auto hash = record["files"].find(file.filename().string());
+        if (hash == record["files"].end() || *hash == file_hash(file)) continue;
+        throw failure(file, "has changed, but the files of later stages were made before",
+                      "continue from an earlier stage");
+    }
+}
+
+/// Reads a mesh in the space of an origin.
+Mesh read_stage_mesh(const std::filesystem::path& file, const glm::dvec3& origin, Report& report) {
+    Model model = read_model(file, report);
+    glm::dvec3 shift(0.0);
+    Mesh mesh;
+    auto* document = std::get_if<GltfDocument>(&model);
+    const GltfView view = document != nullptr ? document->view() : GltfView();
+    const bool is_only = view.primitives.size() == 1 &&
+                         glm::mat3(view.primitives.front().world_from_object) == glm::mat3(1.0F);
+    if (is_only) {
+        // Without a change of any value.
+        const glm::vec3 place(view.primitives.front().world_from_object[3]);
+        if (place != glm::vec3(origin)) shift = glm::dvec3(place) - origin;
+        mesh = document->mesh(view.primitives.front().what);
+    } else {
+        MapModel parts = map_model(std::move(model), ModelSpace::world, report);
+        shift = parts.origin - origin;
+        mesh = joined(std::move(parts.parts));
+    }
+    if (shift != glm::dvec3(0.0)) {
+        for (glm::vec3& position : mesh.positions)
+            position = glm::vec3(glm::dvec3(position) + shift);
+    }
+    mesh.material_ranges.clear();
+    return mesh;
+}
+
+}  // namespace
+
+std::filesystem::path write_stage_record(const std::filesystem::path& folder,
+                                         const make::Asset& asset,
+                                         const make::AssetOptions& options,
+                                         const std::vector<std::filesystem::path>& inputs) {
+    Json record = {{"tool", "relief make"}, {"version", version()}};
+    record["inputs"] = Json::object();
+    for (const std::filesystem::path& input : inputs)
+        record["inputs"][input.string()] = file_hash(input);
+    record["options"] = Json::object();
+    for (const StageOption& option : stage_options(options))
+        record["options"][std::string(option.name)] = option.value;
+    const bool is_remeshed =
+        options.start ? options.start->is_remeshed : asset.remesh && asset.remesh->is_remeshed;
+    record["remeshed"] = is_remeshed;
+    record["files"] = Json::object();
+    const StageFiles files(folder, options);
+    for (const std::string& stage : make::stages_of(options)) {
+        if (stage == "bake" || (stage == "remesh" && !is_remeshed)) continue;
+        const std::filesystem::path file = files.mesh_file(stage);
+        record["files"][file.filename().string()] = file_hash(file);
+    }
+    if (options.start) {  // Files of the stages that did not run.
+        for (const std::string_view stage : {"remesh", "decimate", "unwrap"}) {
+            const std::filesystem::path file = files.mesh_file(stage);
+            if (stage == "remesh" && !is_remeshed) continue;
+            if (stage_number(stage) < stage_number(options.start->stage) &&
+                std::filesystem::exists(file))
+                record["files"][file.filename().string()] = file_hash(file);
+        }
+    }
+    write_json(folder / record_name, record);
+    return folder / record_name;
+}
+
+make::AssetStart read_start(const std::filesystem::path& folder, const std::string& stage,
+                            const make::AssetOptions& options,
+                            const std::vector<std::filesystem::path>& inputs,
+                            const glm::dvec3& origin, Report& report) {
+    const Json record = read_record(folder);
+    make::AssetStart start;
+    start.stage = stage;
+    start.is_remeshed = record["remeshed"] == true;
+    const std::string before = stage_before(stage, options, start.is_remeshed);
+    check_fresh(folder, record, before, options, inputs);
+    const StageFiles files(folder, options);
+    check_earlier_files(files, record, before);
+    const std::filesystem::path file = files.mesh_file(before);
+    if (!std::filesystem::exists(file))
+        throw failure(file, fmt::format("is missing, but --from {} needs it", stage), fresh);
+    if (record["files"].value(file.filename().string(), "") != file_hash(file))
+        report.add("stage file that was edited", "file", 0,
+                   fmt::format("{} replaces the result of its stage", file.string()));
+    start.mesh = about(file, [&] { return read_stage_mesh(file, origin, report); });
+    return start;
+}
+
+}  // namespace relief::tools

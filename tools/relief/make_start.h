@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Continues an asset with the files of --keep-stages. The file stages.json of their folder records
+/// from what they were made. Tests: tests/make/make_start_test.cpp.
+#pragma once
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "common/text.h"
+#include "relief/make/asset.h"
+#include "relief/mesh/report.h"
+
+namespace relief::tools {
+
+/// Writes stages.json. \throws FileError
+/// \param inputs  every file that was read
+/// \return the file
+std::filesystem::path write_stage_record(const std::filesystem::path& folder,
+                                         const make::Asset& asset,
+                                         const make::AssetOptions& options,
+                                         const std::vector<std::filesystem::path>& inputs);
+
+/// Reads the mesh with which a stage begins.
+///
+/// \param origin  of the positions of the source
+/// \param report  counts a file that was edited
+/// \throws FileError if the file or stages.json is missing, or if the files are stale: the model or
+///         an option of an earlier stage has changed, or a file of an earlier stage was edited
+make::AssetStart read_start(const std::filesystem::path& folder, const std::string& stage,
+                            const make::AssetOptions& options,
+                            const std::vector<std::filesystem::path>& inputs,
+                            const glm::dvec3& origin, Report& report);
+
+}  // namespace relief::tools
