@@ -391,8 +391,9 @@ std::vector<LatticePoint> on_lattice(std::span<const glm::dvec2> coordinates, do
 
 std::vector<FlatChart> flat_charts(const AtlasSurface& surface, Segmentation& segmentation,
                                    ChartMembers& members, const FlatnessLimits& limits) {
-    return merged_charts(surface, members, limits,
-                         LimitLadder(surface, segmentation, members, limits).flattened());
+    std::vector<FlatChart> charts = LimitLadder(surface, segmentation, members, limits).flattened();
+    return cut_charts(surface, members, limits,
+                      merged_charts(surface, members, limits, std::move(charts)));
 }
 
 std::optional<FlatChart> flattened_union(const AtlasSurface& surface, ChartMembers& members,

@@ -33,6 +33,8 @@ struct FlatnessLimits {
     double max_stretch = 4.0;
     /// Lattice units of a unit of the surface.
     double lattice_scale = 1.0;
+    double texel = 0.0;    ///< In the unit of the surface.
+    double padding = 0.0;  ///< Texels between charts.
     /// Longer charts are divided, because the map would have to shrink for them.
     double max_side = std::numeric_limits<double>::infinity();
 };
@@ -70,6 +72,11 @@ std::optional<FlatChart> flattened_union(const AtlasSurface& surface, ChartMembe
 /// attempts is bounded, so that the time stays linear.
 std::vector<FlatChart> merged_charts(const AtlasSurface& surface, ChartMembers& members,
                                      const FlatnessLimits& limits, std::vector<FlatChart> charts);
+
+/// Cuts charts along straight lines where that saves more room in the map than the length of the
+/// cut is worth. Coordinates stay as they are, but for rotations.
+std::vector<FlatChart> cut_charts(const AtlasSurface& surface, ChartMembers& members,
+                                  const FlatnessLimits& limits, std::vector<FlatChart> charts);
 
 /// Divides a chart of more than one face at `face`, an index of the chart.
 std::vector<FlatChart> divided_further(const AtlasSurface& surface, ChartMembers& members,

@@ -20,7 +20,7 @@ namespace {
 /// The number of operations for each pair of charts and in all, and the largest share of them at
 /// one scale.
 constexpr std::uint64_t work_of_pair = 250'000;
-constexpr std::uint64_t max_work = 50'000'000;
+constexpr std::uint64_t max_work = 40'000'000;
 constexpr std::uint64_t work_share = 5;
 /// The rise of the scale. It is halved after a failure; after the least one, it is the first again,
 /// with other cuts.

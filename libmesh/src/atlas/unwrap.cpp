@@ -214,6 +214,8 @@ std::vector<PlacedChart> new_atlas(const AtlasSurface& surface, const UnwrapOpti
     limits.method = options.flattening;
     limits.max_stretch = options.max_stretch;
     limits.lattice_scale = texels_per_unit * layout.lattice_size / std::max(size.x, size.y);
+    limits.texel = 1.0 / texels_per_unit;
+    limits.padding = options.padding;
     limits.max_side = (options.tiles == 1 ? max_overlength : max_overlength_of_tiles) *
                       std::max(size.x, size.y) / texels_per_unit;
     ChartMembers members(segmentation.chart);

@@ -310,6 +310,29 @@ TEST(Unwrap, MapsAPlaneToOneRectangle) {
     EXPECT_GT(unwrapped.stats.used, 0.97);
 }
 
+// An angle leaves half of its box unused, and its two arms nothing.
+TEST(Unwrap, CutsAnAngleIntoStrips) {
+    const Mesh plane = test::flat_grid(40);
+    Mesh angle = plane;
+    angle.triangles.clear();
+    for (const glm::uvec3& triangle : plane.triangles) {
+        const glm::vec3 center = (plane.positions[triangle.x] + plane.positions[triangle.y] +
+                                  plane.positions[triangle.z]) /
+                                 3.0F;
+        if (std::min(center.x, center.y) < 12.0F) angle.triangles.push_back(triangle);
+    }
+    UnwrapOptions options;
+    options.size = {512, 512};
+    const Unwrapped unwrapped = unwrap(angle, options);
+    EXPECT_EQ(broken_promise(unwrapped), "");
+    EXPECT_GE(unwrapped.stats.charts, 2U);
+    EXPECT_LE(unwrapped.stats.charts, 3U);
+    EXPECT_NEAR(unwrapped.stats.stretch, 1.0, 1e-6);
+    // The parts would have few texels.
+    options.size = {32, 32};
+    EXPECT_EQ(unwrap(angle, options).stats.charts, 1U);
+}
+
 // The longest triangles of the sphere are as dense as the others.
 TEST(Unwrap, KeepsTheDensityOfASphere) {
     Mesh sphere = make_sphere(64, 32);
@@ -350,7 +373,7 @@ Mesh dented_plate(std::uint32_t side) {
 TEST(Unwrap, MergesSmallCharts) {
     const Unwrapped unwrapped = unwrap(dented_plate(84));
     EXPECT_EQ(broken_promise(unwrapped), "");
-    EXPECT_LE(unwrapped.stats.charts, 45U);
+    EXPECT_LE(unwrapped.stats.charts, 50U);
     EXPECT_LE(unwrapped.stats.small_charts, 2U);
     EXPECT_LT(unwrapped.stats.stretch, 1.03);
 }
@@ -546,8 +569,8 @@ TEST(Unwrap, FillsTilesOfAFewCharts) {
     options.size = {256, 256};
     options.tiles = 4;
     const double tiles = unwrap(sphere, options).stats.used;
-    EXPECT_GT(tiles, whole - 0.15);
-    EXPECT_GT(tiles, 0.5);
+    EXPECT_GT(tiles, whole - 0.2);
+    EXPECT_GT(tiles, 0.55);
 }
 
 TEST(Unwrap, StacksEqualParts) {
@@ -836,7 +859,7 @@ TEST(Unwrap, DividesASpiralStaircase) {
     const Unwrapped unwrapped = unwrap(mesh);
     EXPECT_EQ(broken_promise(unwrapped), "");
     EXPECT_GE(unwrapped.stats.charts, 3U) << "three turns above each other";
-    EXPECT_LE(unwrapped.stats.charts, 12U);
+    EXPECT_LE(unwrapped.stats.charts, 18U) << "each turn is cut";
 }
 
 class UnwrapChanges : public testing::TestWithParam<test::MeshChange> {};
