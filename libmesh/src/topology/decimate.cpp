@@ -169,6 +169,7 @@ struct SceneRemains {
     std::vector<Remains> meshes;
     std::vector<Report> reports;  ///< By mesh.
     Obstacles obstacles;
+    std::optional<double> relaxed_part_error;  ///< As in Collapsed.
 
     [[nodiscard]] std::size_t count() const {
         std::size_t sum = 0;
@@ -205,11 +206,13 @@ SceneRemains remains_of(const Scene& scene, const DecimateOptions& options) {
     if (scene.size() == 1) {
         collapsed.push_back(collapse_edges(with_limits(std::move(prepared_meshes[0].input))));
         result.obstacles = collapsed[0].obstacles;
+        result.relaxed_part_error = collapsed[0].relaxed_part_error;
     } else {
         JoinedSurfaces joined(prepared_meshes, factors);
         const Collapsed all = collapse_edges(with_limits(joined.take()));
         collapsed = joined.separated(all);
         result.obstacles = all.obstacles;
+        result.relaxed_part_error = all.relaxed_part_error;
     }
     for (std::size_t m = 0; m < scene.size(); ++m) {
         result.meshes.push_back(gathered_remains(scene[m].mesh, collapsed[m], prepared_meshes[m]));
@@ -217,10 +220,8 @@ SceneRemains remains_of(const Scene& scene, const DecimateOptions& options) {
     return result;
 }
 
-/// Returns the larger of the maximum distances in both directions.
-///
-/// \param report  counts vertices and triangles that were not examined
-double distance_from(const Mesh& mesh, const Remains& remains, Report& report) {
+/// The surfaces before and after a decimation.
+std::array<Mesh, 2> compared_surfaces(const Mesh& mesh, const Remains& remains) {
     Mesh before;
     Mesh after;
     before.positions = mesh.positions;
@@ -235,57 +236,144 @@ double distance_from(const Mesh& mesh, const Remains& remains, Report& report) {
     for (const auto& [vertex, position] : remains.moved)
         after.positions[vertex] = position;
     after.triangles = remains.triangles;
-    const SurfaceDistance distance = surface_distance(before, after);
-    if (const std::size_t omitted = distance.from_a.omitted + distance.from_b.omitted) {
-        report.add("distance of crossing triangles", "mesh", 0,
-                   fmt::format("is not measured at {} vertices and triangles", omitted));
-    }
+    return {std::move(before), std::move(after)};
+}
+
+double larger_max(const SurfaceDistance& distance) {
     return std::max(distance.from_a.max, distance.from_b.max);
 }
 
-/// Decimates until the measured distance reaches `max_error`. The error of a collapse only
-/// estimates that distance, so its limit is adjusted: the result with the fewest triangles within
-/// the distance is returned.
-SceneRemains remains_within(const Scene& scene, const DecimateOptions& options) {
-    constexpr int max_attempts = 10;
-    constexpr double well_used = 0.7;  ///< The part of the distance at which the search ends.
-    constexpr double rounding = 2.5e-7;
-    const double allowed = *options.max_error + rounding / scene.scale();
-    DecimateOptions attempt = options;
-    std::optional<SceneRemains> best;
-    // Limits below `good` keep the distance, and limits above `bad` do not.
-    double good = 0.0;
-    double bad = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < max_attempts; ++i) {
-        SceneRemains remains = remains_of(scene, attempt);
+/// Searches the fewest triangles within a measured distance. The errors of collapses only estimate
+/// it, so two kinds of results are tried: those of limits of the errors, and, because the largest
+/// distance may be that of few places, those of numbers of triangles.
+class DistanceSearch {
+  public:
+    DistanceSearch(const Scene& scene, const DecimateOptions& options)
+        : scene_(scene),
+          options_(options),
+          allowed_(*options.max_error + rounding / scene.scale()) {}
+
+    SceneRemains result() {
+        search_limits();
+        if (!best_) {
+            // Not even collapses without an error keep the distance.
+            DecimateOptions all = options_;
+            all.triangles = scene_.triangles();
+            return remains_of(scene_, all);
+        }
+        if (*options_.max_error > 0.0 && !has_reached()) search_counts();
+        return *std::move(best_);
+    }
+
+  private:
+    static constexpr int max_limits = 9;
+    static constexpr int max_counts = 10;
+    static constexpr double well_used = 0.97;  ///< The part of the distance that is a good result.
+    static constexpr double rounding = 2.5e-7;
+
+    /// A limit and its distance.
+    struct Tried {
+        double limit, distance;
+    };
+
+    /// Decimates and measures. \return the distance; if it is above the limit, a part of it
+    double attempt(const DecimateOptions& options) {
+        SceneRemains remains = remains_of(scene_, options);
+        const double distance = distance_of(remains);
+        if (distance <= allowed_ && (!best_ || remains.count() <= best_->count()))
+            best_ = std::move(remains);
+        return distance;
+    }
+
+    double distance_of(SceneRemains& remains) const {
         double distance = 0.0;
-        for (std::size_t m = 0; m < scene.size(); ++m) {
-            const double here = distance_from(scene[m].mesh, remains.meshes[m], remains.reports[m]);
-            distance = std::max(distance, here * scene[m].scale);
+        std::vector<std::array<Mesh, 2>> surfaces;
+        for (std::size_t m = 0; m < scene_.size(); ++m) {
+            surfaces.push_back(compared_surfaces(scene_[m].mesh, remains.meshes[m]));
+            // Samples refuse most of the results that are too far away, at a fraction of the cost.
+            const std::size_t samples =
+                std::clamp<std::size_t>(surfaces[m][0].triangles.size() / 16, 1000, 20000);
+            distance = std::max(
+                distance, scene_[m].scale * larger_max(sampled_distance(
+                                                surfaces[m][0], surfaces[m][1], samples, samples)));
         }
-        const double limit = *attempt.max_error;
-        const bool is_within = distance <= allowed;
-        if (is_within && (!best || remains.count() <= best->count())) {
-            best = std::move(remains);
+        for (std::size_t m = 0; m < scene_.size() && distance <= allowed_; ++m) {
+            const SurfaceDistance exact = surface_distance(surfaces[m][0], surfaces[m][1]);
+            if (const std::size_t omitted = exact.from_a.omitted + exact.from_b.omitted) {
+                remains.reports[m].add(
+                    "distance of crossing triangles", "mesh", 0,
+                    fmt::format("is not measured at {} vertices and triangles", omitted));
+            }
+            distance = std::max(distance, scene_[m].scale * larger_max(exact));
         }
-        (is_within ? good : bad) = limit;
-        const bool has_reached = options.triangles && best && best->count() <= *options.triangles;
-        if (has_reached || limit == 0.0) break;
-        if (is_within && distance >= well_used * *options.max_error) break;
-        // The distance is nearly proportional to the limit. Steps are at most a factor of 4.
-        const double factor = std::clamp(0.9 * *options.max_error / distance, 0.25, 4.0);
-        double next = limit * (distance > 0.0 ? factor : 4.0);
-        if (next <= good || next >= bad) next = std::sqrt(std::max(good, bad / 16.0) * bad);
-        if (!(next < std::numeric_limits<double>::max())) break;
-        attempt.max_error = i + 2 == max_attempts && !best ? 0.0 : next;
+        return distance;
     }
-    if (!best) {
-        // Not even collapses without an error keep the distance.
-        attempt.triangles = scene.triangles();
-        best = remains_of(scene, attempt);
+
+    [[nodiscard]] bool has_reached() const {
+        return options_.triangles && best_ && best_->count() <= *options_.triangles;
     }
-    return *std::move(best);
-}
+
+    void search_limits() {
+        DecimateOptions options = options_;
+        std::optional<Tried> good, bad;  // The largest limit within the distance, and the smallest.
+        for (int i = 0; i < max_limits; ++i) {
+            const double limit = *options.max_error;
+            const double distance = attempt(options);
+            const bool is_within = distance <= allowed_;
+            (is_within ? good : bad) = Tried{limit, distance};
+            if (limit == 0.0 || has_reached()) return;
+            if (is_within && distance >= well_used * *options_.max_error) return;
+            if (good && bad && bad->limit < 1.03 * good->limit) return;
+            double next = next_limit(good, bad);
+            if (!(next < std::numeric_limits<double>::max())) return;
+            if (i + 2 == max_limits && !good) next = 0.0;
+            options.max_error = next;
+        }
+    }
+
+    /// Interpolates logarithms, between limits that are known.
+    [[nodiscard]] double next_limit(const std::optional<Tried>& good,
+                                    const std::optional<Tried>& bad) const {
+        const double aim = (1.0 + well_used) / 2.0 * *options_.max_error;
+        const auto ratio = [&](const Tried& tried) {
+            return tried.distance > 0.0 ? aim / tried.distance : 4.0;
+        };
+        if (!bad) return good->limit * std::clamp(ratio(*good), 1.05, 4.0);
+        if (!good) return bad->limit * std::clamp(0.9 * ratio(*bad), 0.25, 0.9);
+        if (good->limit == 0.0) return bad->limit / 4.0;
+        // With distances that do not grow with the limit, this is the middle.
+        double part = 0.5;
+        if (good->distance > 0.0 && bad->distance > good->distance) {
+            part =
+                portable::log(aim / good->distance) / portable::log(bad->distance / good->distance);
+        }
+        return good->limit *
+               portable::exp(std::clamp(part, 0.2, 0.8) * portable::log(bad->limit / good->limit));
+    }
+
+    /// Tries smaller numbers of triangles than that of the best result, by steps that shrink.
+    void search_counts() {
+        DecimateOptions options = options_;
+        options.max_error.reset();
+        const std::size_t least = options_.triangles.value_or(0);
+        double step = 0.75;
+        for (int i = 0; i < max_counts && !has_reached(); ++i) {
+            const auto count = static_cast<double>(best_->count());
+            options.triangles = std::max(static_cast<std::size_t>(step * count), least);
+            const std::size_t before = best_->count();
+            if (*options.triangles >= before) return;
+            attempt(options);
+            if (best_->count() < before) continue;
+            if (step > 0.95) return;
+            step = std::sqrt(step);
+        }
+    }
+
+    const Scene& scene_;
+    const DecimateOptions& options_;
+    double allowed_;
+    std::optional<SceneRemains> best_;
+};
 
 /// Returns the vertices that the remaining triangles use, in their order. Isolated vertices are
 /// counted.
@@ -443,13 +531,20 @@ std::vector<FramedMesh> decimated(std::span<const SceneMesh> meshes, const Decim
     if (meshes.empty()) return {};
     const Scene scene(meshes, options);
     const SceneRemains remains =
-        options.max_error ? remains_within(scene, options) : remains_of(scene, options);
+        options.max_error ? DistanceSearch(scene, options).result() : remains_of(scene, options);
     // One interior move removes two triangles and their layers, so the result may be less than
     // requested.
     if (options.triangles && !options.max_error && remains.count() > *options.triangles)
         scene_report.add(
             "number of triangles out of reach", "mesh", 0,
             fmt::format("{} are left: {}", remains.count(), obstacles_text(remains.obstacles)));
+    if (remains.relaxed_part_error) {
+        scene_report.add(
+            "small parts lose their shape", "mesh", 0,
+            fmt::format("to reach the number of triangles, connected parts have errors "
+                        "of up to {:g} % of their size",
+                        100.0 * *remains.relaxed_part_error));
+    }
     std::vector<FramedMesh> results;
     for (std::size_t m = 0; m < meshes.size(); ++m) {
         reports[m].merge(remains.reports[m]);

@@ -780,12 +780,20 @@ Collapsed Collapser::run() {
     constexpr std::size_t max_checks = 8;
     std::size_t checks = 0;
     bool was_checked = false;
+    bool are_parts_relaxed = false;
     while (triangles_ > target_) {
         const std::size_t before = result_.collapses;
         ++result_.passes;
         run_pass(was_checked ? 1.0 : pass_fraction);
         const bool has_success = result_.collapses > before;
-        if (!has_success && (was_checked || checks == max_checks)) break;
+        const bool is_stuck = !has_success && (was_checked || checks == max_checks);
+        if (is_stuck) {
+            // Small parts keep their shape until nothing else is left.
+            if (target_ == 0 || !error_ || !error_->relax_parts()) break;
+            are_parts_relaxed = true;
+            checks = 0;
+        }
+        if (has_success && are_parts_relaxed) result_.relaxed_part_error = error_->part_error();
         was_checked = !has_success;
         if (has_success) continue;
         ++checks;

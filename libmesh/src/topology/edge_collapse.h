@@ -109,6 +109,8 @@ struct Collapsed {
     /// The number of triangles that were examined, a measure of the work.
     std::size_t examined = 0;
     Obstacles obstacles;
+    /// The error (RMS) that connected parts may have, relative to their size, if it was raised.
+    std::optional<double> relaxed_part_error;
 };
 
 /// Collapses edges until a limit is reached, or no collapse is possible.

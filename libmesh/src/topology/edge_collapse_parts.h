@@ -185,6 +185,10 @@ struct Quadric {
 /// sphere keeps about 30 triangles.
 constexpr double max_part_error = 0.03;
 
+/// The same for collapses without which the number of triangles is out of reach. It keeps a sphere
+/// from becoming flat.
+constexpr double max_relaxed_part_error = 0.06;
+
 /// The squared distance, in the unit of the points, that counts as 0.
 constexpr double collapse_rounding = 1e-15;
 
@@ -242,9 +246,19 @@ class CollapseError {
     /// Returns whether the error is small for the connected part of a vertex.
     [[nodiscard]] bool keeps_part(double cost, std::uint32_t vertex, const Move& move) const {
         if (input_.part_sizes.empty()) return true;
-        const double most = max_part_error * input_.part_sizes[vertex];
+        const double most = part_error_ * input_.part_sizes[vertex];
         return is_within(most * most + input_.attribute_allowance, cost, vertex, move);
     }
+
+    /// Allows twice the errors of connected parts. \return false if they are the largest ones
+    bool relax_parts() {
+        if (input_.part_sizes.empty() || part_error_ >= max_relaxed_part_error) return false;
+        part_error_ *= 2.0;
+        return true;
+    }
+
+    /// Returns the error (RMS) that a connected part may have, relative to its size.
+    [[nodiscard]] double part_error() const { return part_error_; }
 
     /// Adds the errors of a vertex that moves to those of its target.
     void merge(std::uint32_t vertex, const Move& move);
@@ -265,6 +279,7 @@ class CollapseError {
     }
     const CollapseInput& input_;
     const CollapseSurface& surface_;
+    double part_error_ = max_part_error;
     // By vertex:
     std::vector<Quadric> quadrics_;
     std::vector<double> errors_;  ///< The quadric at the vertex itself.

@@ -131,6 +131,30 @@ TEST(DecimateScene, TexturesOfSomeMeshesStayThere) {
 }
 
 TEST_LABELS(not_sanitized);
+TEST(DecimateScene, MaxErrorNeedsAtMostATenthMoreTrianglesThanTheBestNumber) {
+    const Mesh mesh = bare(make_torus(0.4F, 32, 16));
+    DecimateOptions options;
+    options.goal = DecimateGoal::distance;
+    options.fit_positions = true;
+    constexpr double most = 0.06;
+    const auto is_within = [&](std::size_t triangles) {
+        options.triangles = triangles;
+        const SurfaceDistance distance = surface_distance(mesh, decimated(mesh, options).mesh);
+        return std::max(distance.from_a.max, distance.from_b.max) <= most;
+    };
+    std::size_t least = 4;
+    std::size_t best = mesh.triangles.size();
+    while (best - least > 1 + best / 50) {
+        const std::size_t middle = (least + best) / 2;
+        (is_within(middle) ? best : least) = middle;
+    }
+    options.triangles.reset();
+    options.max_error = most;
+    const std::size_t found = decimated(mesh, options).mesh.triangles.size();
+    EXPECT_LE(static_cast<double>(found), 1.1 * static_cast<double>(best));
+}
+
+TEST_LABELS(not_sanitized);
 TEST(DecimateScene, MaxErrorIsALengthOfTheScene) {
     const Mesh torus = bare(make_torus());
     DecimateOptions options;
@@ -185,6 +209,24 @@ TEST(DecimateParts, RoundPartsStayRound) {
         EXPECT_EQ(report.count("number of triangles out of reach"), 1U);
         EXPECT_LT(surface_distance(sphere, result.mesh).from_a.rms, 0.25);
     }
+}
+
+TEST(DecimateParts, SmallPartsGiveUpDetailBeforeTheNumberIsMissed) {
+    // A sphere keeps about 30 triangles with an error of 3 % of its size.
+    const Mesh spheres = bare(copies(make_sphere(), 3, 4.0F));
+    Report report;
+    const FramedMesh result = decimated(spheres, to_triangles(3 * 27), report);
+    EXPECT_LE(result.mesh.triangles.size(), 81U);
+    EXPECT_GE(result.mesh.triangles.size(), 79U);
+    EXPECT_EQ(report.count("number of triangles out of reach"), 0U);
+    ASSERT_EQ(report.count("small parts lose their shape"), 1U);
+    EXPECT_EQ(report.findings()[0].outcome,
+              "to reach the number of triangles, connected parts have errors of up to 6 % of their "
+              "size");
+    EXPECT_LT(surface_distance(spheres, result.mesh).from_a.rms, 0.2);
+    Report of_many;
+    decimated(spheres, to_triangles(3 * 60), of_many);
+    EXPECT_EQ(of_many.count("small parts lose their shape"), 0U);
 }
 
 TEST(DecimateParts, SmallPartsVanishOnRequestOnly) {
