@@ -261,9 +261,8 @@ TEST_F(FidelityTest, DoesNotDependOnTheUnit) {
 TEST_F(FidelityTest, MeasuresMoreViewsOnRequest) {
     // A hole at the upper pole, and views along the axis that points up.
     Mesh open = test::sphere(16, 16);
-    std::erase_if(open.triangles, [&](const glm::uvec3& triangle) {
-        return open.positions[triangle.x].y > 0.9F;
-    });
+    std::erase_if(open.triangles,
+                  [&](const glm::uvec3& triangle) { return open.positions[triangle.x].y > 0.9F; });
     FidelityOptions pictures{.size = 32, .samples = 4, .views = 1};
     pictures.more_views = {{0.0F, 3.0F, 0.0F}, {0.0F, -3.0F, 0.0F}};
     FidelityMeter meter(context(), plain_sphere(test::sphere(16, 16)), pictures);
