@@ -8,10 +8,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "relief/mesh/gltf_document.h"
+#include "relief/mesh/topology.h"
 #include "support/hard_meshes.h"
 #include "support/labels.h"
 #include "support/shapes.h"
@@ -69,6 +71,27 @@ void expect_sound(const Asset& asset) {
 
 const Report& report_of(const Asset& asset, const std::string& stage) {
     return std::ranges::find(asset.reports, stage, &StageReport::stage)->report;
+}
+
+TEST(MakeAsset, DecimatesNoisySurfacesInSteps) {
+    Mesh noisy = test::grid(140);
+    std::mt19937 random(1);
+    for (glm::vec3& p : noisy.positions) {
+        const float noise = static_cast<float>(random()) / 4294967296.0F;
+        p.z = 0.1F * std::sin(9.0F * p.x) * std::sin(9.0F * p.y) + 0.005F * noise;
+    }
+    noisy = test::mesh_from(noisy.positions, noisy.triangles);
+    AssetOptions options = quick_options(800);
+    options.occlusion = false;
+    const Asset asset = make_asset(source_of(noisy), options);
+    DecimateOptions limits;
+    limits.triangles = 800;
+    limits.goal = DecimateGoal::distance;
+    limits.fit_positions = true;
+    const Mesh at_once = decimated(noisy, limits, IgnoredReport()).mesh;
+    const double error = surface_distance(noisy, asset.mesh).from_a.rms;
+    EXPECT_LT(error, 0.85 * surface_distance(noisy, at_once).from_a.rms);
+    EXPECT_LE(asset.mesh.triangles.size(), 800U);
 }
 
 TEST(MakeAsset, HasTheRequestedTrianglesAndMaps) {

@@ -199,7 +199,8 @@ TEST(Remeshing, DecimatesBothSidesOfDoubledWallsAsOne) {
               single.triangles.size());
     EXPECT_NEAR(static_cast<double>(asset.mesh.triangles.size()),
                 static_cast<double>(2 * expected.mesh.triangles.size()), 4.0);
-    EXPECT_LT(asset.atlas->charts, 4 * expected.atlas->charts);
+    // Two sides, and at most twice the charts on each.
+    EXPECT_LE(asset.atlas->charts, 4 * expected.atlas->charts);
     // Rays meet the side in front, except at the border, where both sides are at one place.
     EXPECT_LT(report_of_stage(asset, "bake").count("normal behind the surface"),
               asset.bake.texels_baked / 10);
