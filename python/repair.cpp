@@ -57,10 +57,10 @@ void add_repair(py::module_& module) {
         "non-manifold edges and vertices.\n\n"
         "`weld` is the largest distance of positions that become one, or None: no vertices are\n"
         "merged. `two_sided`, for triangles with the same corners and opposite winding, is\n"
-        "\"keep\", \"single\" or \"remove\". Parts whose box has a diagonal shorter than\n"
-        "`drop_parts` are removed. The other options are those of `relief-mesh repair`. The\n"
-        "result is (mesh, source_vertex), with source_vertex as for with_frames(). Each change\n"
-        "is appended to the list `report`.\n\n"
+        "\"keep\", \"together\", \"single\" or \"remove\". Parts whose box has a diagonal\n"
+        "shorter than `drop_parts` are removed. The other options are those of\n"
+        "`relief-mesh repair`. The result is (mesh, source_vertex), with source_vertex as for\n"
+        "with_frames(). Each change is appended to the list `report`.\n\n"
         "Raises InvalidInput for options that are out of range.");
     module.def("remesh", &py_remeshed, arg("mesh"), py::kw_only(), arg("resolution") = 128,
                arg("shell") = false, arg("report") = py::none(),

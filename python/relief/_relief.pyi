@@ -194,7 +194,7 @@ def repair(
     keep_non_finite: bool = False,
     keep_degenerate: bool = False,
     keep_duplicates: bool = False,
-    two_sided: Literal["keep", "single", "remove"] = "keep",
+    two_sided: Literal["keep", "together", "single", "remove"] = "keep",
     drop_parts: float = 0.0,
     orient: bool = True,
     separate: bool = True,

@@ -352,7 +352,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Algorithm{"encoded_frames", hash_encoded_frames, 0x6A0C3590A8A6CEAE},
                     Algorithm{"conditions", hash_conditions, 0x117C61CB4F3729CC},
                     Algorithm{"curvatures", hash_curvatures, 0x418D159D1EF1D8F6},
-                    Algorithm{"decimation", hash_decimation, 0xEFF571E3A3A4C35C},
+                    Algorithm{"decimation", hash_decimation, 0x2B685D7ECAB1B4AD},
                     Algorithm{"subdivision", hash_subdivision, 0x3ADF25FDEA6AA6E9},
                     Algorithm{"distances", hash_distances, 0xA63F82052F540DC0},
                     Algorithm{"bump", hash_bump, 0x7507D5E8682965A0},

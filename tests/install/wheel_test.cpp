@@ -117,8 +117,9 @@ TEST_F(PythonWheel, SourceArchiveHasAllFilesOfTheBuild) {
     run("mkdir -p sources && tar -C sources --strip-components=1 -xf '" +
         file_with(".gz").string() + "'");
     const std::string git = "git -C '" + source_directory().string() + "' ";
-    if (run(git + "diff --quiet HEAD && " + git + "rev-parse HEAD || true") != "")
+    if (run(git + "diff --quiet HEAD && " + git + "rev-parse HEAD || true") != "") {
         EXPECT_EQ(run("cat sources/cmake/commit.txt"), run(git + "rev-parse HEAD"));
+    }
     run("cmake -G Ninja -S sources -B sources/build/wheel -DCMAKE_BUILD_TYPE=Release "
         "-DRELIEF_TESTS=OFF "
         "-DRELIEF_PYTHON=ON");

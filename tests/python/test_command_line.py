@@ -139,7 +139,7 @@ class MeshTools(CommandLineCase):
         self.assertIn(50, [finding["count"] for finding in report])
         kept, _ = relief.repair(faulty, weld=None, keep_duplicates=True, orient=False, separate=False)
         self.assertEqual(len(kept.triangles), len(faulty.triangles))
-        with self.assertRaisesRegex(relief.InvalidInput, "two_sided: 'both' is not one of keep, single, remove"):
+        with self.assertRaisesRegex(relief.InvalidInput, "two_sided: 'both' is not one of keep, together, single, remove"):
             relief.repair(mesh, two_sided="both")
         self.run_tool("relief-mesh", "remesh", DATA / "vase.obj", out, "--resolution", "24", "--shell", "--normals", "keep")
         self.assert_equal_meshes(relief.remesh(mesh, resolution=24, shell=True), relief.read_mesh(out))
