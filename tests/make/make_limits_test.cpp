@@ -161,7 +161,7 @@ TEST(MakeLimits, ChooseTrianglesAndMapsThatHoldThem) {
     EXPECT_EQ(report["maps"][0]["width"], last["size"][0]);
     EXPECT_NEAR(report["triangles"].get<double>(), last["triangles"].get<double>(), 2.0);
     // Each stage is listed once, with the time of all attempts.
-    EXPECT_EQ(report["stages"].size(), 9U);
+    EXPECT_EQ(report["stages"].size(), 10U);
     EXPECT_THAT(report["command"].get<std::string>(),
                 HasSubstr(" --max-error 3 --max-error-kind mean"));
 }
