@@ -192,14 +192,15 @@ std::string repeating_line(const MakeRequest& request, const Job& job) {
 
 /// Prints the plans of all jobs.
 ExitCode explain(const MakeCommand& command, const TaskList& list) {
-    for (const auto& [job, request] : list.tasks) {
+    for (const MakeTask& task : list.tasks) {
+        const Job& job = task.job;
         SourceFacts facts;
         Findings findings;
         Stages stages(command.general.quiet);
         const make::AssetSource source = stages.run(
-            "read", [&] { return read_source(sources_of(request, job), facts, findings); });
+            "read", [&] { return read_source(sources_of(task.request, job), facts, findings); });
         print_entry("plan", fmt::format("{} -> {}", job.input.string(), job.output.string()));
-        print_entry("", lines_of(plan_of(request, source), command.general.threads));
+        print_entry("", lines_of(plan_of(task.request, source), command.general.threads));
     }
     return ExitCode::done;
 }
