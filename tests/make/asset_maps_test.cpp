@@ -30,8 +30,9 @@ AssetSource square_of(const HighMaterial& left, const HighMaterial& right) {
         const std::vector<glm::vec3>& at = source.mesh.positions;
         return at[triangle.x].x + at[triangle.y].x + at[triangle.z].x < 1.5F;
     };
-    const auto right_ones = std::ranges::stable_partition(source.mesh.triangles, is_left);
-    const auto count = static_cast<std::uint32_t>(right_ones.size());
+    std::vector<glm::uvec3>& triangles = source.mesh.triangles;
+    const auto middle = std::stable_partition(triangles.begin(), triangles.end(), is_left);
+    const auto count = static_cast<std::uint32_t>(triangles.end() - middle);
     source.mesh.material_ranges = {{0, count, 0U}, {count, count, 1U}};
     return source;
 }

@@ -129,8 +129,8 @@ std::vector<AssetFault> asset_faults() {
          mean_degrees},
         {"map shifted by a texel",
          [](make::Asset& asset) {
-             std::ranges::rotate(asset.normal_map.as<std::uint8_t>(),
-                                 asset.normal_map.as<std::uint8_t>().begin() + 3);
+             const std::span<std::uint8_t> samples = asset.normal_map.as<std::uint8_t>();
+             std::rotate(samples.begin(), samples.begin() + 3, samples.end());
          },
          mean_degrees},
         {"mirrored charts",
