@@ -214,34 +214,40 @@ void Maker::begin(const AssetStart& start) {
     }
 }
 
+/// Returns whether a decimation came to the limits that keep the shape of small parts.
+bool is_limited_by_parts(const Report& report) {
+    return report.count("number of triangles out of reach") > 0 ||
+           report.count("small parts lose their shape") > 0;
+}
+
 /// Decimates in steps. Each step ends with moving the vertices to where they fit best, and the next
 /// one chooses among them: the root mean square distance is 6 to 36 % smaller than with one step.
-Mesh decimated_in_steps(Mesh surface, DecimateOptions limits, Report& report) {
+/// Where small parts are the limit there is one step, because their errors would add up.
+Mesh decimated_in_steps(const Mesh& source, DecimateOptions limits, Report& report) {
     // In tenths of the requested triangles.
     constexpr std::array<std::size_t, 4> tenths = {80, 40, 20, 14};
     const std::size_t triangles = *limits.triangles;
-    std::optional<Report> of_source;
+    const Mesh* surface = &source;
+    Mesh coarser;
+    Report of_source, found;
     for (const std::size_t factor : tenths) {
-        if (triangles >= surface.triangles.size()) break;
+        if (triangles >= surface->triangles.size()) break;
         const std::size_t count = factor * triangles / 10;
         // A smaller step is not worth its time.
-        if (surface.triangles.size() < count + count / 4) continue;
+        if (surface->triangles.size() < count + count / 4) continue;
         limits.triangles = count;
-        Report found;
-        surface = decimated(surface, limits, found).mesh;
-        if (!of_source) of_source = std::move(found);
+        found = {};
+        coarser = decimated(*surface, limits, found).mesh;
+        if (is_limited_by_parts(found)) break;
+        if (surface == &source) of_source = found;
+        surface = &coarser;
     }
     limits.triangles = triangles;
-    Report found;
-    Mesh result = decimated(surface, limits, found).mesh;
-    if (!of_source) of_source = found;
-    // What concerns the whole mesh is that of the last step, such as a number out of reach.
-    for (const Finding& finding : of_source->findings()) {
-        if (finding.element != "mesh") report.add(finding);
-    }
-    for (const Finding& finding : found.findings()) {
-        if (finding.element == "mesh") report.add(finding);
-    }
+    if (surface == &source) return decimated(source, limits, report).mesh;
+    Mesh result;
+    if (!is_limited_by_parts(found)) result = decimated(*surface, limits, found = {}).mesh;
+    if (is_limited_by_parts(found)) return decimated(source, limits, report).mesh;
+    report.merge(of_source);
     return result;
 }
 
@@ -266,7 +272,7 @@ void Maker::decimate(Report& report) {
     limits.fit_positions = true;
     limits.frames.normals = NormalWeight::angle;
     limits.frames.tangents = TangentMethod::none;
-    asset_.mesh = decimated_in_steps(std::move(surface), limits, report);
+    asset_.mesh = decimated_in_steps(surface, limits, report);
     if (asset_.mesh.triangles.empty()) throw InvalidInput("no triangle is left after decimation");
     const bool is_remeshed = closed_ || (options_.start && options_.start->is_remeshed);
     if (options_.repair && !is_remeshed && report.count("double-sided triangle") > 0)

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "relief/mesh/gltf_document.h"
@@ -92,6 +93,34 @@ TEST(MakeAsset, DecimatesNoisySurfacesInSteps) {
     const double error = surface_distance(noisy, asset.mesh).from_a.rms;
     EXPECT_LT(error, 0.85 * surface_distance(noisy, at_once).from_a.rms);
     EXPECT_LE(asset.mesh.triangles.size(), 800U);
+}
+
+TEST(MakeAsset, DecimatesManySmallPartsInOneStep) {
+    const Mesh part = test::sphere(16, 8);
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    for (int i = 0; i < 64; ++i) {
+        const auto first = static_cast<std::uint32_t>(positions.size());
+        for (const glm::vec3& position : part.positions)
+            positions.push_back(position + glm::vec3(3 * (i % 8), 3 * (i / 8), 0));
+        for (const glm::uvec3& triangle : part.triangles)
+            triangles.push_back(triangle + first);
+    }
+    AssetOptions options = quick_options(600);
+    options.occlusion = false;
+    options.remesh = Remeshing::never;
+    Mesh before;
+    options.take_mesh = [&](std::string_view stage, const Mesh& mesh) {
+        if (stage == "repair") before = test::mesh_from(mesh.positions, mesh.triangles);
+    };
+    const Asset asset = make_asset(source_of(test::mesh_from(positions, triangles)), options);
+    DecimateOptions limits;
+    limits.triangles = 600;
+    limits.goal = DecimateGoal::distance;
+    limits.fit_positions = true;
+    EXPECT_EQ(asset.mesh.triangles.size(),
+              decimated(before, limits, IgnoredReport()).mesh.triangles.size());
+    EXPECT_GT(asset.mesh.triangles.size(), 600U);
 }
 
 TEST(MakeAsset, HasTheRequestedTrianglesAndMaps) {
