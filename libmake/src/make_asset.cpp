@@ -42,12 +42,12 @@ void check(const AssetStart& start, bool keeps_texcoords) {
     if (std::ranges::find(start_order, start.stage) == start_order.end())
         throw InvalidInput(fmt::format("no job can continue at a stage \"{}\"", start.stage));
     if (start.stage == "unwrap" && keeps_texcoords)
-        throw InvalidInput("there is no stage \"unwrap\", because texture coordinates are kept");
+        throw InvalidInput("a job that keeps texture coordinates cannot continue at \"unwrap\"");
     validate(start.mesh);
     const auto require = [&](bool is_there, const char* what) {
         if (!is_there) {
             throw InvalidInput(
-                fmt::format("the mesh for the stage \"{}\" has no {}", start.stage, what));
+                fmt::format("the mesh for the stage \"{}\" must have {}", start.stage, what));
         }
     };
     require(!start.mesh.triangles.empty(), "triangles");

@@ -17,7 +17,7 @@
 namespace RELIEF_API relief {
 namespace make::detail {
 
-/// What the stages before the judgment have found.
+/// The figures that the stages before the judgment measure.
 struct RemeshEvidence {
     double crowded_edges = 0.0;  ///< The share of edges with three or more triangles.
     double excess = 0.0;         ///< Triangles beyond the target, relative to it.

@@ -96,6 +96,8 @@ TEST(JobFile, IsRefusedWithTheLineAndTheKeyBeforeAnythingIsMade) {
         "{\"assets\": [{\"input\": \"data/vase.obj\", \"remesh\": \"never\", "
         "\"resolution\": 64}]}",
         "line 1: assets[0]: --resolution: has no effect");
+    expect_fault("{\"assets\": [{\"input\": \"data/vase.obj\", \"view\": \"30,20\"}]}",
+                 "line 1: assets[0]: --view: has no effect");
     const ProgramResult options = workplace.run("relief make --job job.json --triangles 5");
     EXPECT_EQ(options.exit_code, 2);
     EXPECT_THAT(options.error,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an asset lost, after each stage, and the faults of an asset that this shows.
+// The loss of an asset is measured after each stage, and faults of an asset raise it.
 #include "make_loss.h"
 
 #include <gmock/gmock.h>

@@ -102,6 +102,19 @@ TEST_F(StartedAsset, IsRefusedIfFilesAreStaleOrMissing) {
     EXPECT_THAT(alone.error, HasSubstr("--from bake: needs files of stages"));
 }
 
+TEST_F(StartedAsset, IsRefusedIfAFileOfTheModelIsLeftOutOrAdded) {
+    const std::string both = "--triangles 200 --with data/urn-low.obj";
+    const ProgramResult added = run(both + " --from bake");
+    EXPECT_EQ(added.exit_code, 1);
+    EXPECT_THAT(added.error, HasSubstr("data/urn-low.obj was not a part of the model"));
+    EXPECT_TRUE(workplace.read("out/a.glb") == asset);
+    ASSERT_EQ(run(both).exit_code, 0);
+    EXPECT_EQ(run(both + " --from bake").exit_code, 0);
+    const ProgramResult left_out = run("--triangles 200 --from bake");
+    EXPECT_EQ(left_out.exit_code, 1);
+    EXPECT_THAT(left_out.error, HasSubstr("data/urn-low.obj was a part of the model"));
+}
+
 // An option of a later stage may change.
 TEST_F(StartedAsset, CanHaveOtherMaps) {
     const ProgramResult result = workplace.run(

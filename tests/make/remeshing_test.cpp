@@ -242,5 +242,19 @@ TEST(RemeshCommand, StatesItsFiguresAndRefusesUselessOptions) {
          {line + "--resolution 4", 2, "--resolution 4"}});
 }
 
+TEST(RemeshCommand, PrintedCommandRepeatsAJobThatKeepsTextureCoordinates) {
+    const Workplace workplace;
+    ASSERT_EQ(workplace
+                  .run("relief make data/vase.obj out/a.glb --triangles 200 --size 32 --padding 1 "
+                       "--occlusion-rays 0 --keep-uvs --report out/a.json")
+                  .exit_code,
+              0);
+    const std::string asset = workplace.read("out/a.glb");
+    const json report = json::parse(workplace.read("out/a.json"));
+    const ProgramResult again = workplace.run(report["command"].get<std::string>());
+    EXPECT_EQ(again.exit_code, 0) << again.error;
+    EXPECT_TRUE(workplace.read("out/a.glb") == asset);
+}
+
 }  // namespace
 }  // namespace relief::make

@@ -29,7 +29,8 @@ struct ReshapeRequest {
     FileWords words;
     std::optional<ModelFormat> format;  ///< Of files in an output folder.
     NormalMode normals = NormalMode::keep;
-    /// Of the distance between IN and OUT; `full`: at all vertices and inside the triangles.
+    /// How the distance between IN and OUT is measured; `full`: at all vertices and inside the
+    /// triangles.
     std::optional<Measuring> measuring;
     ReportOptions report;
     GeneralOptions general;

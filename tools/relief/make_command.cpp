@@ -151,6 +151,11 @@ std::string names_of_layers(const std::vector<LayerKind>& layers) {
     return fmt::format("{}", fmt::join(names, ","));
 }
 
+/// Returns whether the options of remeshing have an effect.
+bool can_remesh(const make::AssetOptions& asset) {
+    return asset.remesh != make::Remeshing::never && !asset.keep_texcoords;
+}
+
 /// The line that repeats a job, with all options that change the asset.
 std::string repeating_line(const MakeRequest& request, const Job& job) {
     const make::AssetOptions& asset = request.asset;
@@ -161,12 +166,10 @@ std::string repeating_line(const MakeRequest& request, const Job& job) {
         asset.crease_angle ? fmt::format("{:.6g}", *asset.crease_angle * 180.0 / std::numbers::pi)
                            : "none");
     if (!asset.repair) line += " --no-repair";
-    if (asset.remesh != make::Remeshing::never) {
-        line +=
-            fmt::format(" --remesh {} --resolution {}", enum_name(asset.remesh), asset.resolution);
+    line += fmt::format(" --remesh {}", enum_name(asset.remesh));
+    if (can_remesh(asset)) {
+        line += fmt::format(" --resolution {}", asset.resolution);
         if (asset.shell) line += " --shell";
-    } else {
-        line += " --remesh never";
     }
     if (asset.keep_texcoords) line += " --keep-uvs";
     for (const std::filesystem::path& file : request.more_sources)
@@ -294,14 +297,18 @@ ExitCode make_all(const CLI::App& app, const MakeCommand& command, const TaskLis
     return code;
 }
 
-/// \throws UsageError if options of remeshing have no effect or contradict others
-void check_remeshing(const CLI::App& app, const MakeRequest& request) {
+/// \throws UsageError if options of an asset have no effect or contradict others
+void check_asset_options(const CLI::App& app, const MakeRequest& request) {
     const make::AssetOptions& asset = request.asset;
     if (asset.keep_texcoords && asset.remesh == make::Remeshing::always) {
         throw UsageError("--remesh always and --keep-uvs contradict each other",
                          "a closed surface needs new texture coordinates");
     }
-    if (asset.remesh != make::Remeshing::never && !asset.keep_texcoords) return;
+    if (!request.more_views.empty() && !request.measures_loss && !request.limits.any()) {
+        throw UsageError("--view: has no effect, because no loss is measured",
+                         "add --loss or a limit of it");
+    }
+    if (can_remesh(asset)) return;
     for (const char* option : {"--resolution", "--shell"}) {
         if (is_given(app, option)) {
             throw UsageError(fmt::format("{}: has no effect, because nothing is remeshed", option),
@@ -345,7 +352,7 @@ TaskList read_tasks(const CLI::App& app, const MakeCommand& command) {
                              "write them into its \"defaults\"");
         }
     }
-    TaskList list{read_job_file(file, add_asset_options, check_remeshing), false, {}};
+    TaskList list{read_job_file(file, add_asset_options, check_asset_options), false, {}};
     for (const MakeTask& task : list.tasks)
         check_formats(task.job);
     return list;
@@ -363,12 +370,7 @@ ExitCode make(const CLI::App& app, const MakeCommand& command) {
                                      command.request.more_sources.front().string()),
                          "make a single asset without an output folder");
     }
-    if (!command.request.more_views.empty() && !command.request.measures_loss &&
-        !command.request.limits.any()) {
-        throw UsageError("--view: has no effect, because no loss is measured",
-                         "add --loss or a limit of it");
-    }
-    if (!command.job_file) check_remeshing(app, command.request);
+    if (!command.job_file) check_asset_options(app, command.request);
     check_start(command);
     set_thread_limit(command.general.threads);
     if (command.explain) return explain(command, list);
@@ -563,7 +565,7 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
               [&command](const std::string&, const std::string& text) { command.job_file = text; })
         .group(output);
     add_value(app, "--keep-stages", "FOLDER",
-              "Also write the mesh after each stage (01-repair.glb, 02-decimate.glb, ...) and the "
+              "Also write the mesh after each stage (01-repair.glb, 03-decimate.glb, ...) and the "
               "baked maps as PNG files. Only for one asset.",
               [&command](const std::string&, const std::string& text) {
                   command.request.stages_folder = text;

@@ -7,12 +7,8 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
-#include <limits>
-#include <map>
 #include <memory>
-#include <numbers>
 #include <utility>
 
 #include "common/model_file.h"
@@ -24,9 +20,6 @@
 #include "make_stages.h"
 #include "make_start.h"
 #include "relief/mesh/execution.h"
-#include "relief/mesh/image_file.h"
-#include "relief/mesh/map_description.h"
-#include "relief/mesh/normal_map.h"
 
 namespace relief::tools {
 namespace {

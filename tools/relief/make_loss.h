@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What an asset lost against its source, as relief/shade/fidelity.h measures it, after each stage
-/// that can lose something: tables, text and JSON. Tests: tests/make/make_loss_test.cpp.
+/// The loss of an asset against its source, as relief/shade/fidelity.h measures it, after each
+/// stage that can lose something: tables, text and JSON. Tests: tests/make/make_loss_test.cpp.
 #pragma once
 
 #include <cstddef>

@@ -54,11 +54,7 @@ PlannedStage remesh_plan(const make::AssetOptions& options, double dense) {
             0.0};
 }
 
-}  // namespace
-
-namespace {
-
-/// What the rays of the bake give: "normals", "colors", ...
+/// Returns the layers that the rays of the bake give: "normals", "colors", ...
 std::vector<std::string> layers_of(const make::AssetOptions& options,
                                    const make::AssetSource& source) {
     const make::VaryingProperties varying = make::varying_properties(source.mesh, source);

@@ -5,9 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <numbers>
-#include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -84,20 +83,26 @@ Json read_record(const std::filesystem::path& folder) {
 void check_fresh(const std::filesystem::path& folder, const Json& record, std::string_view last,
                  const make::AssetOptions& options,
                  const std::vector<std::filesystem::path>& inputs) {
+    const auto stale = [&](const std::string& reason) {
+        return failure(folder, "is stale: " + reason, fresh);
+    };
+    std::set<std::string> names;
     for (const std::filesystem::path& input : inputs) {
-        if (record["inputs"].value(input.string(), "") != file_hash(input)) {
-            throw failure(folder, fmt::format("is stale: {} has changed since", input.string()),
-                          fresh);
-        }
+        const std::string name = input.string();
+        names.insert(name);
+        const auto hash = record["inputs"].find(name);
+        if (hash == record["inputs"].end()) throw stale(name + " was not a part of the model");
+        if (*hash != file_hash(input)) throw stale(name + " has changed since");
+    }
+    for (const auto& [name, hash] : record["inputs"].items()) {
+        if (!names.contains(name)) throw stale(name + " was a part of the model");
     }
     for (const StageOption& option : stage_options(options)) {
         if (stage_number(option.stage) > stage_number(last)) continue;
         const std::string before = record["options"].value(std::string(option.name), "unknown");
         if (before != option.value) {
-            throw failure(folder,
-                          fmt::format("is stale: --{} was {}, and is {} now", option.name, before,
-                                      option.value),
-                          fresh);
+            throw stale(
+                fmt::format("--{} was {}, and is {} now", option.name, before, option.value));
         }
     }
 }

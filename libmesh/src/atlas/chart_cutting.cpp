@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "atlas/chart_outline.h"
 #include "atlas/convex_hull.h"
 #include "atlas/flat_charts.h"
+#include "geometry/weld.h"
 #include "parallel.h"
 #include "progress_stage.h"
 
@@ -66,28 +66,6 @@ struct Line {
     glm::dvec2 normal{1.0, 0.0};  ///< In the chart, unit.
     double offset = 0.0;          ///< dot(normal, point) of its points.
     double saved = 0.0;           ///< Room, less the cost of the cut.
-};
-
-/// Merges indices into sets.
-class Sets {
-  public:
-    void reset(std::size_t count) {
-        parent_.resize(count);
-        std::iota(parent_.begin(), parent_.end(), 0U);
-    }
-    std::uint32_t root(std::uint32_t i) {
-        while (parent_[i] != i)
-            i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = root(a);
-        b = root(b);
-        if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::uint32_t> parent_;
 };
 
 /// Estimates what cuts along straight lines save, on the cells of a chart.
@@ -170,7 +148,7 @@ class LineSearch {
         // The pieces of each part, and their room.
         by_part_.clear();
         for (std::uint32_t i = 0; i < pieces_.size(); ++i)
-            by_part_.emplace_back(sets_.root(i), i);
+            by_part_.emplace_back(sets_.find(i), i);
         std::sort(by_part_.begin(), by_part_.end());
         for (std::size_t i = 0; i < by_part_.size() && saved > 0.0;) {
             const std::uint32_t part = by_part_[i].first;
@@ -203,7 +181,7 @@ class LineSearch {
     CellMask mask_;
     std::vector<Piece> pieces_;
     std::vector<std::size_t> first_;  ///< The first piece of each row.
-    Sets sets_;
+    DisjointSets sets_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> by_part_;
 };
 

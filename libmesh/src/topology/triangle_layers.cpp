@@ -171,8 +171,8 @@ TriangleLayers separate_layers(
             std::sort(wedges.begin(), wedges.end());
             return wedges;
         };
-        // Of repeated triangles, the one with the first corner in front stays: the tangents of a
-        // triangle depend on its first corner.
+        // The tangents of a triangle depend on its first corner. Therefore the repeated triangle
+        // with the first corner in front stays.
         for (std::size_t begin = 0, end = 0; begin < stack.size(); begin = end) {
             while (end < stack.size() && key_of(stack[end]) == key_of(stack[begin]) &&
                    wedges_of(stack[end]) == wedges_of(stack[begin]))

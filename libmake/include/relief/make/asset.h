@@ -40,8 +40,8 @@ struct AssetSource {
     std::vector<HighMaterial> materials;
     /// The material of triangles without a material.
     std::optional<HighMaterial> otherwise;
-    /// What all materials share: the alpha mode, whether they are double-sided, and the factors
-    /// that HighMaterial does not have (clearcoat, index of refraction, ...). The asset gets them.
+    /// The properties that all materials share, and that the asset gets: the alpha mode, the sides,
+    /// and the factors that HighMaterial does not have (clearcoat, index of refraction, ...).
     GltfMaterial shared;
 };
 
@@ -58,7 +58,7 @@ struct AssetOptions {
     /// The steps of the repair; absent: only triangles without area are removed, and those with a
     /// position that is not finite.
     std::optional<RepairOptions> repair = RepairOptions{};
-    /// Whether the triangles are replaced by a closed surface around them before decimation. With
+    /// Decides whether a closed surface replaces the triangles before decimation. With
     /// `keep_texcoords`, `automatic` means `never`.
     Remeshing remesh = Remeshing::automatic;
     int resolution = 256;  ///< Of the grid (RemeshOptions::resolution).

@@ -41,9 +41,9 @@ struct RemeshCriterion {
 
 /// The distances between the source and the closed surface around it, at random samples.
 struct RemeshDistance {
-    /// Of the points of the source that are seen from outside.
+    /// The distances of those points of the source that are seen from outside.
     double rms_of_source = 0.0, max_of_source = 0.0;
-    /// Of the points of the closed surface from the source.
+    /// The distances of the points of the closed surface from the source.
     double rms_of_surface = 0.0, max_of_surface = 0.0;
     double hidden = 0.0;  ///< The share of the source's area that is not seen from outside.
 };
