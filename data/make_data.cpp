@@ -72,6 +72,7 @@ void write_all(const std::filesystem::path& folder) {
     relief::write_mesh(folder / "vase.obj", vase_with_material(folder));
     relief::write_mesh(folder / "urn-high.ply", {sample::carved_urn(), {}});
     relief::write_mesh(folder / "urn-low.obj", {sample::plain_urn(), {}});
+    relief::write_mesh(folder / "fossil.ply", {sample::fossil(), {}});
     std::filesystem::create_directories(folder / "scenes");
     write_glb(folder / "scenes" / "pot.glb", sample::pot());
     write_glb(folder / "scenes" / "knot.glb", sample::knot());

@@ -18,10 +18,22 @@ namespace {
 
 constexpr const char* outcome = "is not what was made";
 
+/// Adds what was found in a level of detail. Its triangles use the texels of the whole mesh, and no
+/// bake follows.
+void add_of_level(const Finding& finding, Report& problems) {
+    Finding theirs = finding;
+    if (theirs.kind == condition_info(MeshCondition::texture_overlapping).word) {
+        theirs.kind = "overlapping texture in a level of detail";
+        theirs.outcome = "shows texels that another triangle shows too";
+    }
+    problems.add(theirs);
+}
+
 void check_meshes(const CheckedModel& checked, Report& problems) {
     for (const CheckedPart& part : checked.parts) {
-        problems.merge(part.problems);
         const auto index = static_cast<std::size_t>(&part - checked.parts.data());
+        for (const Finding& finding : part.problems.findings())
+            index == 0 ? problems.add(finding) : add_of_level(finding, problems);
         const bool has_frames = part.tangents && !part.tangents->identified.agreements.empty();
         if (!has_frames) {
             problems.add("mesh without tangents", "primitive", index, outcome);

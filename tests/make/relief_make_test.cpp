@@ -55,6 +55,18 @@ TEST(MakeCommand, MakesAnAssetThatPassesTheChecks) {
                                                 "frames", "bake", "write", "verify"}));
 }
 
+// Levels have the texture of the whole mesh: where a chart loses a part of its outline, triangles can
+// share texels. The mesh that was baked never does.
+TEST(MakeCommand, SaysThatOnlyLevelsShareTexels) {
+    const Workplace workplace;
+    const ProgramResult result = workplace.run(
+        "relief make data/fossil.ply out/a.glb --triangles 3000 --size 256 --lods 3 "
+        "--occlusion-rays 2");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("x overlapping texture in a level of detail ("));
+    EXPECT_THAT(result.out, Not(HasSubstr("a bake is ambiguous")));
+}
+
 TEST(MakeCommand, ReducesForSmallDistancesBecauseMapsHaveTheNormals) {
     const Workplace workplace;
     const ProgramResult result = workplace.run(

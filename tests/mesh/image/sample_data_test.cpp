@@ -12,6 +12,7 @@
 #include <map>
 #include <tuple>
 
+#include "relief/mesh/diagnose.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/texel_coverage.h"
@@ -37,7 +38,7 @@ TEST(SampleData, TheProgramWritesTheSameFilesAgain) {
         EXPECT_TRUE(test::read_bytes(entry.path()) == test::read_bytes(data / name)) << name;
         ++compared;
     }
-    EXPECT_EQ(compared, 15U);
+    EXPECT_EQ(compared, 16U);
 }
 
 /// Returns the mean difference of adjacent columns (or rows): across the seam, and the largest one
@@ -192,6 +193,19 @@ TEST(SampleData, TheUrnsAreClosedAndOneShape) {
     EXPECT_GT(plain, 0.4);
     EXPECT_GT(enclosed(high), plain);
     EXPECT_LT(enclosed(high), 1.1 * plain);
+}
+
+TEST(SampleData, TheFossilIsAClosedScanWithColors) {
+    Report report;
+    const Mesh mesh = read_mesh(data / "fossil.ply", report).mesh;
+    EXPECT_TRUE(report.empty());
+    EXPECT_EQ(mesh.triangles.size(), 300304U);
+    EXPECT_TRUE(mesh.texcoords.empty());
+    EXPECT_EQ(mesh.colors.size(), mesh.positions.size());
+    // A pillow of 1.12 x 0.23 x 0.96, of which the shells cover a part.
+    EXPECT_GT(enclosed(mesh), 0.1);
+    EXPECT_LT(enclosed(mesh), 0.2);
+    EXPECT_TRUE(diagnose(mesh).conditions.empty());
 }
 
 TEST(SampleData, TheUrnsChartsLieApart) {
