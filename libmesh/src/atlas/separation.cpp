@@ -57,7 +57,7 @@ std::array<glm::dvec2, rotation_count> rotations() {
 }
 
 /// A chart in one rotation at the present scale.
-struct Pose {
+struct RotatedChart {
     glm::dvec2 offset{0.0};  ///< Of the chart's origin from the corner of the mask, texels.
     CellMask mask;
 };
@@ -99,7 +99,7 @@ class Separation {
                 std::find(rotations_.begin(), rotations_.end(), placement.direction);
             places_[i].rotation =
                 static_cast<std::size_t>(rotation - rotations_.begin()) % rotation_count;
-            const Pose& pose = this->pose(i, places_[i].rotation);
+            const RotatedChart& pose = this->pose(i, places_[i].rotation);
             centers_.push_back(placement.offset - pose.offset + 0.5 * size_of(pose));
         }
         kept_ = places_;
@@ -121,7 +121,7 @@ class Separation {
         kept_ = places_;
         for (std::size_t i = 0; i < charts_.size(); ++i) {
             const Place& place = places_[i];
-            const Pose& pose = this->pose(i, place.rotation);
+            const RotatedChart& pose = this->pose(i, place.rotation);
             // Blocks of texels are counted from the upper edge of the map.
             const glm::dvec2 corner(
                 place.at.x * options_.cell,
@@ -141,8 +141,8 @@ class Separation {
     }
 
     /// Returns a pose, which is computed when it is first needed.
-    const Pose& pose(std::size_t chart, std::size_t rotation) {
-        std::optional<Pose>& pose = poses_[chart][rotation];
+    const RotatedChart& pose(std::size_t chart, std::size_t rotation) {
+        std::optional<RotatedChart>& pose = poses_[chart][rotation];
         if (pose) return *pose;
         std::optional<Outline>& outline = outlines_[chart][rotation];
         if (!outline) outline = outline_of(charts_[chart], rotations_[rotation]);
@@ -151,7 +151,7 @@ class Separation {
         pose->mask = mask_of(*outline, scale_, options_.margin, options_.cell);
         return *pose;
     }
-    [[nodiscard]] glm::dvec2 size_of(const Pose& pose) const {
+    [[nodiscard]] glm::dvec2 size_of(const RotatedChart& pose) const {
         return static_cast<double>(options_.cell) * glm::dvec2(pose.mask.width, pose.mask.height);
     }
     [[nodiscard]] bool fits(const CellMask& mask) const {
@@ -334,7 +334,7 @@ class Separation {
     SeparationOptions options_;
     std::array<glm::dvec2, rotation_count> rotations_;
     std::vector<std::array<std::optional<Outline>, rotation_count>> outlines_;
-    std::vector<std::array<std::optional<Pose>, rotation_count>> poses_;  ///< At `scale_`.
+    std::vector<std::array<std::optional<RotatedChart>, rotation_count>> poses_;  ///< At `scale_`.
     std::vector<Place> places_;
     std::vector<Place> kept_;
     std::vector<glm::dvec2> centers_;  ///< Of the charts' boxes at the kept places, texels.
