@@ -22,15 +22,26 @@ constexpr double min_border_share = 0.15;
 /// The box of a union may be larger than both boxes by this factor: long and branched charts waste
 /// space in the map.
 constexpr double max_box_growth = 1.25;
-/// The largest mean of the symmetric Dirichlet energy of a union, relative to that of an isometric
-/// map: of small charts, which matter little, and of others. It keeps the L2 stretch below 1.005.
+/// The largest energy_of() of a union: of small charts, which matter little, and of others. It
+/// keeps the L2 stretch below 1.005.
 constexpr double max_union_energy = 1.02;
 constexpr double max_large_union_energy = 1.006;
-/// The number of failures after which a chart stays as it is.
+/// Noise stretches charts, however small they are. So small unions may have the energy that their
+/// charts have before anything is merged, up to this one.
+constexpr double max_noise_energy = 1.05;
+/// Dust: charts below this number of texels, if all of them have a small share of the area. The
+/// energy of a union may grow as if this much more were spent on the dust alone.
+constexpr double dust_texels = 128.0;
+constexpr double max_dust_share = 0.01;
+constexpr double dust_energy = 1.0;
+/// The number of failures after which a chart stays as it is, and after which dust does.
 constexpr int max_failures = 3;
-/// The number of faces of all unions that are tried, per face of the surface: in all, and with
-/// larger charts. These may also try a fixed number of faces, which costs little time.
+constexpr int max_dust_failures = 6;
+/// The number of faces of all unions that are tried, per face of the surface: with small charts,
+/// with dust, and with larger charts. These may also try a fixed number of faces, which costs
+/// little time.
 constexpr double max_tried_faces = 3.0;
+constexpr double max_tried_with_dust = 1.0;
 constexpr double max_tried_large = 0.05;
 constexpr double max_tried_at_all = 20000.0;
 constexpr int max_rounds = 64;
@@ -51,14 +62,25 @@ class ChartMerger {
           charts_(std::move(charts)),
           chart_of_(surface.faces.size()),
           perimeters_(charts_.size()),
+          energies_(charts_.size()),
           failures_(charts_.size(), 0),
           faces_left_(max_tried_faces * static_cast<double>(surface.faces.size())),
+          dust_faces_left_(max_tried_with_dust * static_cast<double>(surface.faces.size())),
           large_faces_left_(max_tried_at_all +
                             max_tried_large * static_cast<double>(surface.faces.size())) {
         for (std::uint32_t chart = 0; chart < charts_.size(); ++chart) {
             total_area_ += charts_[chart].area;
             adopt(chart);
         }
+        parallel_for(charts_.size(), 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                energies_[i] = std::min(energy_of(surface_, charts_[i]), max_noise_energy);
+        });
+        max_dust_area_ = dust_texels * limits.texel * limits.texel;
+        double dust_area = 0.0;
+        for (const FlatChart& chart : charts_)
+            if (chart.area < max_dust_area_) dust_area += chart.area;
+        if (dust_area > max_dust_share * total_area_) max_dust_area_ = 0.0;
         for (Corner corner = 0; corner < surface.opposite.size(); ++corner) {
             const Corner other = surface.opposite[corner];
             if (other == no_corner || other < corner || surface.is_border[corner]) continue;
@@ -135,7 +157,7 @@ class ChartMerger {
             // A closed union cannot be flattened.
             const double longer = std::max(perimeters_[pair.a], perimeters_[pair.b]);
             return pair.length > (1.0 - 1e-9) * longer || pair.share < min_border_share ||
-                   failures_[small] >= max_failures ||
+                   failures_[small] >= (is_dust(pair) ? max_dust_failures : max_failures) ||
                    (is_large(pair) && pair.creases > max_crease_share * pair.length) ||
                    std::binary_search(failed_.begin(), failed_.end(), std::pair(pair.a, pair.b));
         });
@@ -145,6 +167,23 @@ class ChartMerger {
     }
     [[nodiscard]] bool is_large(const Pair& pair) const {
         return charts_[smaller(pair)].area > max_area_share * total_area_;
+    }
+    [[nodiscard]] bool is_dust(const Pair& pair) const {
+        return charts_[smaller(pair)].area < max_dust_area_;
+    }
+    /// Returns the largest permitted energy of the union of a pair.
+    [[nodiscard]] double max_energy(const Pair& pair) const {
+        if (is_large(pair)) return max_large_union_energy;
+        const double area = charts_[pair.a].area + charts_[pair.b].area;
+        double energy = mean_energy(pair);
+        if (is_dust(pair)) energy += dust_energy * charts_[smaller(pair)].area / area;
+        return std::max(max_union_energy, energy);
+    }
+    /// Returns the energy of a pair before anything was merged.
+    [[nodiscard]] double mean_energy(const Pair& pair) const {
+        const double a = charts_[pair.a].area;
+        const double b = charts_[pair.b].area;
+        return (energies_[pair.a] * a + energies_[pair.b] * b) / (a + b);
     }
     [[nodiscard]] std::uint32_t smaller(const Pair& pair) const {
         return charts_[pair.a].area < charts_[pair.b].area ? pair.a : pair.b;
@@ -157,7 +196,9 @@ class ChartMerger {
         for (const Pair& pair : candidates) {
             const auto faces = static_cast<double>(charts_[pair.a].mesh.faces.size() +
                                                    charts_[pair.b].mesh.faces.size());
-            double& left = is_large(pair) ? large_faces_left_ : faces_left_;
+            double& left = is_large(pair)  ? large_faces_left_
+                           : is_dust(pair) ? dust_faces_left_
+                                           : faces_left_;
             if (is_used[pair.a] || is_used[pair.b] || faces > left) continue;
             is_used[pair.a] = is_used[pair.b] = true;
             left -= faces;
@@ -178,9 +219,8 @@ class ChartMerger {
         parallel_for(pairs.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 check_cancelled();
-                unions[i] =
-                    flattened_union(surface_, members_, std::move(faces[i]), limits_, total_area_,
-                                    is_large(pairs[i]) ? max_large_union_energy : max_union_energy);
+                unions[i] = flattened_union(surface_, members_, std::move(faces[i]), limits_,
+                                            total_area_, max_energy(pairs[i]));
             }
         });
         for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -191,6 +231,7 @@ class ChartMerger {
                 failed_.emplace_back(pairs[i].a, pairs[i].b);
                 continue;
             }
+            energies_[pairs[i].a] = mean_energy(pairs[i]);
             a = std::move(*unions[i]);
             b = FlatChart();
             adopt(pairs[i].a);
@@ -204,11 +245,14 @@ class ChartMerger {
     std::vector<FlatChart> charts_;        ///< Without faces if it is part of another one.
     std::vector<std::uint32_t> chart_of_;  ///< For each face.
     std::vector<double> perimeters_;       ///< Of the charts.
+    std::vector<double> energies_;         ///< Of the charts before anything was merged.
     std::vector<int> failures_;            ///< Of a chart as the smaller one of a pair.
     std::vector<Corner> seams_;            ///< One of the two edges between two charts each.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> failed_;  ///< Ascending.
     double total_area_ = 0.0;
+    double max_dust_area_ = 0.0;
     double faces_left_;        ///< The number of faces of unions that may still be tried.
+    double dust_faces_left_;   ///< The same with dust.
     double large_faces_left_;  ///< The same with charts that are not small.
 };
 

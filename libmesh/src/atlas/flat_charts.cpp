@@ -67,17 +67,9 @@ class ChartFlattener {
         FlatChart chart;
         chart.mesh = chart_mesh(surface_, members_, std::move(faces));
         if (try_flatten(chart)) return std::nullopt;
-        double energy = 0.0;
-        for (std::uint32_t i = 0; i < chart.mesh.faces.size(); ++i) {
-            const std::uint32_t face = chart.mesh.faces[i];
-            const Stretch stretch =
-                stretch_of(surface_, face, corners_of(chart.mesh, i, chart.coordinates));
-            const double largest = stretch.largest * stretch.largest;
-            const double smallest = stretch.smallest * stretch.smallest;
-            energy += surface_.areas[face] * (largest + smallest + 1.0 / largest + 1.0 / smallest);
+        for (const std::uint32_t face : chart.mesh.faces)
             chart.area += surface_.areas[face];
-        }
-        if (!(energy <= 4.0 * max_energy * chart.area)) return std::nullopt;
+        if (!(energy_of(surface_, chart) <= max_energy)) return std::nullopt;
         align_to_box(chart);
         if (end_of_long(chart)) return std::nullopt;
         return chart;
@@ -394,6 +386,21 @@ std::vector<FlatChart> flat_charts(const AtlasSurface& surface, Segmentation& se
     std::vector<FlatChart> charts = LimitLadder(surface, segmentation, members, limits).flattened();
     return cut_charts(surface, members, limits,
                       merged_charts(surface, members, limits, std::move(charts)));
+}
+
+double energy_of(const AtlasSurface& surface, const FlatChart& chart) {
+    double energy = 0.0;
+    double area = 0.0;
+    for (std::uint32_t i = 0; i < chart.mesh.faces.size(); ++i) {
+        const std::uint32_t face = chart.mesh.faces[i];
+        const Stretch stretch =
+            stretch_of(surface, face, corners_of(chart.mesh, i, chart.coordinates));
+        const double largest = stretch.largest * stretch.largest;
+        const double smallest = stretch.smallest * stretch.smallest;
+        energy += surface.areas[face] * (largest + smallest + 1.0 / largest + 1.0 / smallest);
+        area += surface.areas[face];
+    }
+    return energy / (4.0 * area);
 }
 
 std::optional<FlatChart> flattened_union(const AtlasSurface& surface, ChartMembers& members,

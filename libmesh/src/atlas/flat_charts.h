@@ -58,10 +58,13 @@ std::vector<LatticePoint> on_lattice(std::span<const glm::dvec2> coordinates, do
 std::vector<FlatChart> flat_charts(const AtlasSurface& surface, Segmentation& segmentation,
                                    ChartMembers& members, const FlatnessLimits& limits);
 
+/// Returns the mean of the symmetric Dirichlet energy of a chart by area, relative to that of an
+/// isometric map; it is 1 if nothing is stretched, and may be infinite.
+double energy_of(const AtlasSurface& surface, const FlatChart& chart);
+
 /// Flattens a connected union of charts.
 /// \param faces  ascending, of one chart of `members`. \param total_area  of the surface
-/// \param max_energy  the largest mean of the symmetric Dirichlet energy, relative to that of an
-///         isometric map
+/// \param max_energy  the largest permitted energy_of()
 /// \return none if it overlaps itself or exceeds the limits
 std::optional<FlatChart> flattened_union(const AtlasSurface& surface, ChartMembers& members,
                                          std::vector<std::uint32_t> faces,
