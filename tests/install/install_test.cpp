@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The installed library: examples build against a moved tree and print correct numbers, and
 // programs need only the third parties of their components.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -375,6 +376,33 @@ TEST(AddedFolder, GivesTheMeshComponentAlone) {
     const std::string commands = run_clean("ninja -C build -t commands engine", folder.path()).out;
     EXPECT_THAT(commands, HasSubstr("-Wl,-soname,librelief_mesh.so." + abi_version + " "));
     EXPECT_THAT(commands, testing::Not(HasSubstr("libmesh/src/io/")));
+}
+
+// Two sources with a structure of one name do not compile as a batch. Their objects are joined;
+// those of Windows would lose their exception handlers, as scripts/dev/try-windows has shown.
+TEST(CompileBatch, JoinsSourcesWhoseNamesClashExceptForWindows) {
+    const TemporaryDirectory folder;
+    std::filesystem::create_directories(folder.path() / "Unity");
+    std::string batch;
+    for (const char* name : {"one", "two"}) {
+        const std::filesystem::path source = folder.path() / fmt::format("{}.cpp", name);
+        std::ofstream(source) << "namespace { struct Pose { int value; }; }\nint " << name
+                              << "() { return Pose{1}.value; }\n";
+        batch += "#include \"" + source.string() + "\"\n";
+    }
+    std::ofstream(folder.path() / "Unity/all.cxx") << batch;
+    std::ofstream(folder.path() / "main.cpp")
+        << "int one();\nint two();\nint main() { return one() + two() - 2; }\n";
+    const std::string compile = (source_directory() / "cmake/compile-batch").string() + " '" +
+                                compiler + "' -O1 -o ./Unity/all.o -c Unity/all.cxx";
+    const ProgramResult joined = run_clean(compile, folder.path());
+    ASSERT_EQ(joined.exit_code, 0) << joined.error;
+    EXPECT_THAT(joined.error, HasSubstr("clash in a batch; each was compiled alone"));
+    expect_success("'" + compiler + "' main.cpp Unity/all.o -o main && ./main", folder.path());
+    const ProgramResult windows =
+        run_clean(std::regex_replace(compile, std::regex("all\\.o "), "all.obj "), folder.path());
+    EXPECT_EQ(windows.exit_code, 1);
+    EXPECT_THAT(windows.error, HasSubstr("objects for Windows cannot be joined"));
 }
 
 // scripts/dev/try-windows builds these targets. Compiling them would take minutes; Ninja names the
