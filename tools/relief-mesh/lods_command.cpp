@@ -116,6 +116,11 @@ std::vector<LodMesh> lod_meshes_of(const GltfDocument& document) {
     return meshes;
 }
 
+/// Returns the size at which the sphere around a mesh covers the screen.
+double pixels_of_screen() {
+    return std::sqrt(lod_screen_width * lod_screen_height * 4.0 / std::numbers::pi);
+}
+
 /// Returns the part of the screen that the sphere around a mesh covers.
 double coverage_of(double pixels) {
     const double area = std::numbers::pi / 4.0 * pixels * pixels;
@@ -309,11 +314,17 @@ void LevelMaker::choose_sizes(LevelResult& level) {
             const bool is_beyond = found && found->flip <= found->moved_flip &&
                                    pixels > found->pixels &&
                                    2.0 * found->pixels > lod_screen_height;
-            if ((!found || is_beyond) && are_sampled[i]) {
-                // A distance that decides is that of all vertices.
+            // A distance that decides is that of all vertices.
+            if (!found && are_sampled[i]) {
                 are_sampled[i] = false;
                 distances[i] = surface_distance(mesh.surface, surfaces_[i]);
                 pixels = pixels_by_distance();
+            } else if (is_beyond) {
+                // A little beyond the size of the screen, the level is used at every size.
+                const double of_pixel = command_.error() * mesh.diameter;
+                const double least = std::max({of_pixel / (1.01 * pixels_of_screen()),
+                                               distances[i].from_a.max, distances[i].from_b.max});
+                pixels = of_pixel / largest_distance(mesh.surface, surfaces_[i], least);
             }
             if (found) {
                 if (!is_beyond || pixels < found->pixels) pixels = found->pixels;

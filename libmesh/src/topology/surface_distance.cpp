@@ -141,7 +141,9 @@ class Surface {
         const glm::dvec3 size = glm::dvec3(boxes_[1].high) - glm::dvec3(boxes_[1].low);
         return 1e-7 * std::max({size.x, size.y, size.z});
     }
-    [[nodiscard]] Nearest nearest(const glm::dvec3& p, std::uint32_t guess, Work& work) const;
+    /// \param enough  a search ends at a triangle within this squared distance
+    [[nodiscard]] Nearest nearest(const glm::dvec3& p, std::uint32_t guess, Work& work,
+                                  double enough = 0.0) const;
     /// Adds prisms to the nodes that have thin triangles and are not too large, so that the time is
     /// linear. The results of searches do not change.
     void add_prisms();
@@ -447,9 +449,11 @@ Prism Surface::prism_of(std::size_t begin, std::size_t end) const {
 }
 
 /// Finds the nearest triangle; a good guess makes it faster. Ties: the lowest index wins.
-Nearest Surface::nearest(const glm::dvec3& p, std::uint32_t guess, Work& work) const {
+Nearest Surface::nearest(const glm::dvec3& p, std::uint32_t guess, Work& work,
+                         double enough) const {
     constexpr Work of_triangle = 4;
     Nearest best{squared_distance(p, corners(guess)), guess};
+    if (best.squared < enough) return best;
     std::array<std::pair<double, std::size_t>, 64> stack;
     std::size_t height = 0;
     stack[height++] = entry(p, 1, best.squared);
@@ -468,6 +472,7 @@ Nearest Surface::nearest(const glm::dvec3& p, std::uint32_t guess, Work& work) c
                 if (here < best.squared || (here == best.squared && index < best.triangle))
                     best = {here, index};
             }
+            if (best.squared < enough) return best;
             continue;
         }
         work += 2;
@@ -640,6 +645,8 @@ struct InteriorSearch {
     const Surface& to;
     Work work = 0;
     Work most;
+    double slack = 1.004;      ///< Of squares: what is not told apart, 0.2 %.
+    double enough = 0.0;       ///< Searches end at a triangle within this squared distance.
     bool was_stopped = false;  ///< The work has exceeded `most`.
 
     double largest(const std::array<Probe, 3>& piece, double known, int depth);
@@ -649,7 +656,6 @@ struct InteriorSearch {
 /// The distance from one triangle is convex, so the largest one at the corners bounds it. The piece
 /// is divided while that bound is above `known`.
 double InteriorSearch::largest(const std::array<Probe, 3>& piece, double known, int depth) {
-    constexpr double slack = 1.004;  // Of squares: 0.2 %.
     double corner = 0.0;
     for (const Probe& probe : piece)
         corner = std::max(corner, probe.nearest.squared);
@@ -668,13 +674,13 @@ double InteriorSearch::largest(const std::array<Probe, 3>& piece, double known, 
         return corner;
     }
     const glm::dvec3 center = (piece[0].point + piece[1].point + piece[2].point) / 3.0;
-    const Nearest of_center = to.nearest(center, piece[0].nearest.triangle, work);
+    const Nearest of_center = to.nearest(center, piece[0].nearest.triangle, work, enough);
     corner = std::max(corner, of_center.squared);
     if (depth == 0 || is_bounded_by(of_center.triangle)) return corner;
     std::array<Probe, 3> middle;
     for (std::size_t i = 0; i < 3; ++i) {
         middle[i].point = (piece[(i + 1) % 3].point + piece[(i + 2) % 3].point) / 2.0;
-        middle[i].nearest = to.nearest(middle[i].point, of_center.triangle, work);
+        middle[i].nearest = to.nearest(middle[i].point, of_center.triangle, work, enough);
         corner = std::max(corner, middle[i].nearest.squared);
     }
     known = std::max(known, corner);
@@ -695,7 +701,8 @@ struct Largest {
 /// Computes the distances of the used vertices.
 ///
 /// \param step  only each vertex at a multiple of this index is examined
-Largest largest_of_vertices(const Surface& from, const Surface& to, std::size_t step,
+/// \param least  squared distances below it are not told apart
+Largest largest_of_vertices(const Surface& from, const Surface& to, std::size_t step, double least,
                             std::vector<Nearest>& nearest) {
     const std::vector<glm::vec3>& positions = from.mesh().positions;
     std::vector<bool> is_used(positions.size(), false);
@@ -716,7 +723,7 @@ Largest largest_of_vertices(const Surface& from, const Surface& to, std::size_t 
                     ++largest.omitted;
                     continue;
                 }
-                nearest[v] = to.nearest(glm::dvec3(positions[v]), guess, work);
+                nearest[v] = to.nearest(glm::dvec3(positions[v]), guess, work, least);
                 guess = nearest[v].triangle;
                 largest.squared = std::max(largest.squared, nearest[v].squared);
             }
@@ -733,12 +740,14 @@ Largest largest_of_vertices(const Surface& from, const Surface& to, std::size_t 
 /// Computes the maximum distance of vertices and of points inside the triangles.
 ///
 /// \param work  the mean work of a search
-void measure_maximum(const Surface& from, const Surface& to, Work work, DistanceStats& stats) {
+/// \param least  squared distances below it are not told apart
+void measure_maximum(const Surface& from, const Surface& to, Work work, DistanceStats& stats,
+                     double least = 0.0) {
     const std::size_t vertices = from.mesh().positions.size();
     const Work excess = work > little_work ? vertices * work / max_work : 0;
     const auto step = static_cast<std::size_t>(1 + excess);
     std::vector<Nearest> nearest;
-    const Largest at_vertices = largest_of_vertices(from, to, step, nearest);
+    const Largest at_vertices = largest_of_vertices(from, to, step, least, nearest);
     const double of_all = std::max(at_vertices.squared, stats.max * stats.max);
     stats.max = std::sqrt(of_all);
     stats.omitted = at_vertices.omitted;
@@ -747,7 +756,7 @@ void measure_maximum(const Surface& from, const Surface& to, Work work, Distance
         return;
     }
     // Distances below the rounding of positions are not told apart.
-    const double known = std::max(of_all, to.rounding() * to.rounding());
+    const double known = std::max({of_all, to.rounding() * to.rounding(), least});
     constexpr std::size_t max_pieces = 500'000;
     int depth = 1;
     while (depth < 6 && (from.size() << (2 * depth + 2)) <= max_pieces)
@@ -758,6 +767,10 @@ void measure_maximum(const Surface& from, const Surface& to, Work work, Distance
         measured_in_pieces<Largest>(from.size(), [&](std::size_t begin, std::size_t end) {
             Largest largest{of_all, 0};
             InteriorSearch search{to, 0, allowed * (end - begin)};
+            // Searches that ended early have found any near triangle: with slack, the result would
+            // depend on which.
+            if (least > 0.0) search.slack = 1.0;
+            search.enough = least;
             for (std::size_t t = begin; t < end; ++t) {
                 check_cancelled();
                 std::array<Probe, 3> piece;
@@ -789,10 +802,14 @@ DistanceStats distances_on(const Surface& from, const Surface& to, Work work) {
     return stats;
 }
 
-DistanceStats distances(const Surface& from, const Surface& to) {
+/// Calls measure(to, work) with the surface, or with its triangles divided if searches take less
+/// work then.
+template <typename Measure>
+DistanceStats measured_with_little_work(const Surface& from, const Surface& to,
+                                        const Measure& measure) {
     constexpr std::size_t searches = 256;
     const Work work = mean_work(from, to, searches);
-    if (work <= little_work) return distances_on(from, to, work);
+    if (work <= little_work) return measure(to, work);
     Surface divided = to;
     Work of_divided = work;
     for (const std::size_t more : {500'000, 2'000'000}) {
@@ -800,8 +817,23 @@ DistanceStats distances(const Surface& from, const Surface& to) {
         of_divided = mean_work(from, divided, searches);
         if (of_divided <= little_work) break;
     }
-    return of_divided < work ? distances_on(from, divided, of_divided)
-                             : distances_on(from, to, work);
+    return of_divided < work ? measure(divided, of_divided) : measure(to, work);
+}
+
+DistanceStats distances(const Surface& from, const Surface& to) {
+    return measured_with_little_work(from, to, [&](const Surface& surface, Work work) {
+        return distances_on(from, surface, work);
+    });
+}
+
+double largest_distance(const Surface& from, const Surface& to, double least) {
+    const DistanceStats stats =
+        measured_with_little_work(from, to, [&](const Surface& surface, Work work) {
+            DistanceStats largest;
+            measure_maximum(from, surface, work, largest, least * least);
+            return largest;
+        });
+    return std::max(stats.max, least);
 }
 
 /// Measures at random samples, fewer if searches take long.
@@ -845,6 +877,20 @@ SurfaceDistance sampled_distance(const Mesh& a, const Mesh& b, std::size_t sampl
     if (surface_a.size() == 0 || surface_b.size() == 0) return {};
     return {random_distances(surface_a, surface_b, samples_a, seed),
             random_distances(surface_b, surface_a, samples_b, seed)};
+}
+
+double largest_distance(const Mesh& a, const Mesh& b, double least) {
+    validate(a);
+    validate(b);
+    if (!(least >= 0.0))
+        throw InvalidInput(fmt::format("the least distance is {}, but must be at least 0", least));
+    Surface surface_a(a);
+    Surface surface_b(b);
+    if (surface_a.size() == 0 || surface_b.size() == 0) return least;
+    surface_a.add_prisms();
+    surface_b.add_prisms();
+    // What one direction has found need not be found again.
+    return largest_distance(surface_b, surface_a, largest_distance(surface_a, surface_b, least));
 }
 
 double max_farther_part(std::size_t samples, double confidence) {

@@ -174,6 +174,14 @@ SurfaceDistance surface_distance(const Mesh& a, const Mesh& b);
 SurfaceDistance sampled_distance(const Mesh& a, const Mesh& b, std::size_t samples_a,
                                  std::size_t samples_b, std::uint32_t seed = 0);
 
+/// Returns the largest distance in both directions as surface_distance() measures it, or `least` if
+/// all points are within it: where most points are, this is several times faster.
+///
+/// \param a, b  valid (mesh.h). Triangles with a non-finite corner are ignored
+/// \param least  at least 0; the result if one of the surfaces has no triangle
+/// \throws InvalidInput if `least` is negative or not a number
+double largest_distance(const Mesh& a, const Mesh& b, double least);
+
 /// Returns the largest part p of the area that is farther than the maximum of random samples, with
 /// a confidence: 1 - p = (1 - confidence)^(1 / samples), because all samples are outside of a part
 /// p with a probability of at most (1 - p)^samples.
