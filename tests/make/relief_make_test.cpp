@@ -55,8 +55,8 @@ TEST(MakeCommand, MakesAnAssetThatPassesTheChecks) {
                                                 "frames", "bake", "write", "verify"}));
 }
 
-// Levels have the texture of the whole mesh: where a chart loses a part of its outline, triangles can
-// share texels. The mesh that was baked never does.
+// Levels have the texture of the whole mesh: where a chart loses a part of its outline, triangles
+// can share texels. The mesh that was baked never does.
 TEST(MakeCommand, SaysThatOnlyLevelsShareTexels) {
     const Workplace workplace;
     const ProgramResult result = workplace.run(
