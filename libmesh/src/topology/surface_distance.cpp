@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The distance between surfaces, by closest points on a bounding volume hierarchy. The triangles of
-// the hierarchy are sorted along a curve through space and grouped in pairs, so it is a complete
-// binary tree in an array. Axis-aligned boxes of long, thin triangles overlap: in a fan, a point is
-// in the boxes of a large part of the triangles. Nodes with such triangles have a second bound, an
-// oriented prism. If they cross each other in all directions, prisms do not help; then the
-// triangles are divided into slabs with boxes of their own, which refer to the whole triangle. The
-// time is limited: the work of a search is measured first, and if all searches together would
-// exceed the limit, fewer points are examined, and the others are counted.
+// The distance between surfaces, by searches of closest points (surface_search.h). The time is
+// limited: the work of a search is measured first, and if all searches together would exceed the
+// limit, fewer points are examined, and the others are counted.
+// Tests: tests/mesh/topology/surface_distance_test.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -26,6 +21,7 @@
 #include "portable_math.h"
 #include "progress_stage.h"
 #include "relief/mesh/topology.h"
+#include "topology/surface_search.h"
 #include "topology/triangle_distance.h"
 
 namespace relief {
@@ -33,464 +29,19 @@ using namespace relief::detail;
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
-/// Positions are in single precision, so boxes in single precision are exact.
-struct Box {
-    glm::vec3 low{std::numeric_limits<float>::infinity()};
-    glm::vec3 high{-std::numeric_limits<float>::infinity()};
-
-    void add(const glm::vec3& p) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    [[nodiscard]] double squared_distance(const glm::dvec3& p) const {
-        // Written for each axis, which compiles without branches.
-        const auto away = [](double from, double to, double at) {
-            return std::max(std::max(from - at, at - to), 0.0);
-        };
-        const double x = away(low.x, high.x, p.x);
-        const double y = away(low.y, high.y, p.y);
-        const double z = away(low.z, high.z, p.z);
-        return x * x + y * y + z * z;
-    }
-};
-
-/// An infinite prism with a rectangular cross-section, along the mean direction of long triangles.
-struct Prism {
-    std::array<glm::dvec3, 2> across;  ///< Perpendicular to the prism and to each other.
-    std::array<double, 2> low{infinite, infinite};
-    std::array<double, 2> high{-infinite, -infinite};
-
-    void add(const glm::dvec3& p) {
-        for (std::size_t i = 0; i < 2; ++i) {
-            const double at = glm::dot(across[i], p);
-            low[i] = std::min(low[i], at);
-            high[i] = std::max(high[i], at);
-        }
-    }
-    /// Returns a lower bound of the squared distance, which considers the rounding of `across`.
-    [[nodiscard]] double squared_distance(const glm::dvec3& p) const {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < 2; ++i) {
-            const double at = glm::dot(across[i], p);
-            const double away = std::max({low[i] - at, at - high[i], 0.0});
-            sum += away * away;
-        }
-        return sum * (1.0 - 1e-12);
-    }
-};
-
-/// The longest edge of a triangle, and its normal with twice the area as length.
-struct Extent {
-    glm::dvec3 edge{0.0};
-    glm::dvec3 normal{0.0};
-
-    /// Returns whether the triangle is at least 8 times as long as it is wide.
-    [[nodiscard]] bool is_thin() const { return glm::dot(edge, edge) > 8.0 * glm::length(normal); }
-};
-
-Extent extent_of(const Corners& corners) {
-    Extent extent;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const glm::dvec3 edge = corners[(i + 1) % 3] - corners[i];
-        if (glm::dot(edge, edge) > glm::dot(extent.edge, extent.edge)) extent.edge = edge;
-    }
-    extent.normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-    return extent;
-}
-
-/// Returns a unit vector perpendicular to a unit vector.
-glm::dvec3 perpendicular(const glm::dvec3& unit) {
-    const glm::dvec3 away = std::abs(unit.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-    return glm::normalize(glm::cross(unit, away));
-}
-
-/// The work of a search: the number of examined boxes, a triangle counting as four.
-using Work = std::uint64_t;
-
 /// The mean work of a search that needs no limit: that on a surface without thin triangles is about
 /// 150.
-constexpr Work little_work = 500;
+constexpr SearchWork little_work = 500;
 
 /// Beyond that, the work for all vertices, which takes one to six seconds of processor time.
-constexpr Work max_work = 200'000'000;
-
-/// The triangle that is nearest to a point.
-struct Nearest {
-    double squared = infinite;
-    std::uint32_t triangle = 0;  ///< Index in the surface.
-};
-
-/// The finite triangles of a mesh, with a hierarchy.
-class Surface {
-  public:
-    explicit Surface(const Mesh& mesh);
-
-    [[nodiscard]] std::size_t size() const { return triangles_.size(); }
-    [[nodiscard]] Corners corners(std::size_t triangle) const {
-        const auto& at = corners_[triangle];
-        return {glm::dvec3(at[0]), glm::dvec3(at[1]), glm::dvec3(at[2])};
-    }
-    [[nodiscard]] const glm::uvec3& vertices(std::size_t triangle) const {
-        return triangles_[triangle];
-    }
-    [[nodiscard]] const Mesh& mesh() const { return mesh_; }
-    /// A bound of the rounding of positions in single precision.
-    [[nodiscard]] double rounding() const {
-        const glm::dvec3 size = glm::dvec3(boxes_[1].high) - glm::dvec3(boxes_[1].low);
-        return 1e-7 * std::max({size.x, size.y, size.z});
-    }
-    /// \param enough  a search ends at a triangle within this squared distance
-    [[nodiscard]] Nearest nearest(const glm::dvec3& p, std::uint32_t guess, Work& work,
-                                  double enough = 0.0) const;
-    /// Adds prisms to the nodes that have thin triangles and are not too large, so that the time is
-    /// linear. The results of searches do not change.
-    void add_prisms();
-    /// Divides long triangles into up to `more` additional slabs, and builds the hierarchy of
-    /// these. The results of searches do not change.
-    void divide(std::size_t more);
-
-  private:
-    /// A part of a triangle.
-    struct Slab {
-        Box box;
-        std::uint32_t triangle;
-    };
-
-    void gather_corners();
-    void sort_along_curve();
-    [[nodiscard]] double slab_length(std::size_t more) const;
-    void add_slabs(std::uint32_t triangle, double length);
-    void sort_slabs();
-    void build();
-    [[nodiscard]] Prism prism_of(std::size_t begin, std::size_t end) const;
-    /// Returns a lower bound of the squared distance of a node, and the node. The prism is
-    /// considered only if the box does not exceed `known`.
-    [[nodiscard]] std::pair<double, std::size_t> entry(const glm::dvec3& p, std::size_t node,
-                                                       double known) const {
-        const double distance = boxes_[node].squared_distance(p);
-        const std::uint32_t prism =
-            prism_of_node_.empty() || distance > known ? no_prism : prism_of_node_[node];
-        return {
-            prism == no_prism ? distance : std::max(distance, prisms_[prism].squared_distance(p)),
-            node};
-    }
-    /// The leaves hold the triangles, or the slabs if there are any.
-    [[nodiscard]] std::size_t items() const { return slabs_.empty() ? size() : slabs_.size(); }
-    [[nodiscard]] std::uint32_t triangle_of(std::size_t item) const {
-        return slabs_.empty() ? static_cast<std::uint32_t>(item) : slabs_[item].triangle;
-    }
-    [[nodiscard]] Box box_of(std::size_t item) const {
-        if (!slabs_.empty()) return slabs_[item].box;
-        const auto& at = corners_[item];
-        return {glm::min(glm::min(at[0], at[1]), at[2]), glm::max(glm::max(at[0], at[1]), at[2])};
-    }
-
-    static constexpr std::size_t leaf_size = 4;
-    static constexpr std::uint32_t no_prism = std::numeric_limits<std::uint32_t>::max();
-    const Mesh& mesh_;
-    std::vector<glm::uvec3> triangles_;
-    std::vector<std::array<glm::vec3, 3>> corners_;  ///< By triangle.
-    std::vector<Slab> slabs_;
-    std::size_t leaves_ = 1;  ///< A power of two.
-    std::vector<Box> boxes_;  ///< Children of node i are 2i and 2i + 1; leaves begin at leaves_.
-    std::vector<Prism> prisms_;
-    std::vector<std::uint32_t> prism_of_node_;  ///< Empty if there is no prism.
-};
-
-Surface::Surface(const Mesh& mesh) : mesh_(mesh) {
-    for (const glm::uvec3& t : mesh.triangles) {
-        if (is_finite(mesh.positions[t.x]) && is_finite(mesh.positions[t.y]) &&
-            is_finite(mesh.positions[t.z]))
-            triangles_.push_back(t);
-    }
-    if (triangles_.empty()) return;
-    gather_corners();
-    sort_along_curve();
-    gather_corners();
-    build();
-}
-
-void Surface::gather_corners() {
-    corners_.resize(triangles_.size());
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
-        check_cancelled(t);
-        for (int i = 0; i < 3; ++i)
-            corners_[t][static_cast<std::size_t>(i)] = mesh_.positions[triangles_[t][i]];
-    }
-}
-
-/// Returns the key of a point along a curve through space, with 20 bits for each axis.
-std::uint64_t curve_key(const glm::dvec3& offset, double longest) {
-    // Moves bit i to bit 3 i: the upper half of each group of bits moves away from the lower one.
-    const auto spread = [&](double x) {
-        auto bits = static_cast<std::uint64_t>(std::clamp(x / longest * 1048575.0, 0.0, 1048575.0));
-        bits = (bits | bits << 32) & 0x001f00000000ffff;
-        bits = (bits | bits << 16) & 0x001f0000ff0000ff;
-        bits = (bits | bits << 8) & 0x100f00f00f00f00f;
-        bits = (bits | bits << 4) & 0x10c30c30c30c30c3;
-        return (bits | bits << 2) & 0x1249249249249249;
-    };
-    return spread(offset.x) | (spread(offset.y) << 1) | (spread(offset.z) << 2);
-}
-
-/// Returns an order of things along the curve through their centers.
-template <typename Center>
-std::vector<std::uint32_t> order_along_curve(const Mesh& mesh, std::size_t count,
-                                             const Center& center) {
-    const Bounds bounds = bounds_of(mesh);
-    const glm::dvec3 low(bounds.min);
-    const glm::dvec3 size = glm::dvec3(bounds.max) - low;
-    const double longest = std::max({size.x, size.y, size.z, 1e-300});
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(count);
-    parallel_for(count, 16384, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            keys[i] = {curve_key(center(i) - low, longest), static_cast<std::uint32_t>(i)};
-    });
-    check_cancelled();
-    std::sort(keys.begin(), keys.end());
-    check_cancelled();
-    std::vector<std::uint32_t> order;
-    order.reserve(count);
-    for (const auto& key : keys)
-        order.push_back(key.second);
-    return order;
-}
-
-void Surface::sort_along_curve() {
-    const auto order = order_along_curve(mesh_, size(), [&](std::size_t t) {
-        const Corners at = corners(t);
-        return (at[0] + at[1] + at[2]) / 3.0;
-    });
-    std::vector<glm::uvec3> sorted;
-    sorted.reserve(order.size());
-    for (const std::uint32_t t : order)
-        sorted.push_back(triangles_[t]);
-    triangles_ = std::move(sorted);
-}
-
-/// Returns the length of slabs at which their number is limited.
-double Surface::slab_length(std::size_t more) const {
-    double longest = 0.0;
-    for (std::size_t t = 0; t < size(); ++t)
-        longest = std::max(longest, glm::length(extent_of(corners(t)).edge));
-    const auto count = [&](double length) {
-        double sum = 0.0;
-        check_cancelled();
-        for (std::size_t t = 0; t < size(); ++t)
-            sum += std::ceil(glm::length(extent_of(corners(t)).edge) / length);
-        return sum;
-    };
-    constexpr int max_halvings = 12;
-    double length = longest;
-    for (int i = 0; i < max_halvings; ++i) {
-        if (!(length > 0.0) || count(length / 2.0) > static_cast<double>(size() + more)) break;
-        length /= 2.0;
-    }
-    return length;
-}
-
-/// Adds the parts of a triangle between planes across its longest edge.
-void Surface::add_slabs(std::uint32_t triangle, double length) {
-    Corners at = corners(triangle);
-    // The longest edge is that from corner 0 to corner 1.
-    const auto edge = [&](std::size_t i) { return at[(i + 1) % 3] - at[i]; };
-    std::size_t first = 0;
-    for (std::size_t i = 1; i < 3; ++i) {
-        if (glm::dot(edge(i), edge(i)) > glm::dot(edge(first), edge(first))) first = i;
-    }
-    std::rotate(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(first), at.end());
-    const glm::dvec3 along = edge(0);
-    const double squared = glm::dot(along, along);
-    const auto count = static_cast<std::size_t>(
-        std::max(1.0, length > 0.0 ? std::ceil(std::sqrt(squared) / length) : 1.0));
-    const double apex =
-        squared > 0.0 ? std::clamp(glm::dot(at[2] - at[0], along) / squared, 0.0, 1.0) : 0.0;
-    const glm::dvec3 largest =
-        glm::max(glm::abs(at[0]), glm::max(glm::abs(at[1]), glm::abs(at[2])));
-    const double margin = 1e-12 * (largest.x + largest.y + largest.z);
-    // The point on the two other edges, at a part of the longest edge.
-    const auto beside = [&](double part) {
-        if (part < apex) return at[0] + (part / apex) * (at[2] - at[0]);
-        return apex < 1.0 ? at[2] + ((part - apex) / (1.0 - apex)) * (at[1] - at[2]) : at[2];
-    };
-    for (std::size_t i = 0; i < count; ++i) {
-        const double begin = static_cast<double>(i) / static_cast<double>(count);
-        const double end = static_cast<double>(i + 1) / static_cast<double>(count);
-        glm::dvec3 low(infinite);
-        glm::dvec3 high(-infinite);
-        const auto add = [&](const glm::dvec3& p) {
-            low = glm::min(low, p);
-            high = glm::max(high, p);
-        };
-        add(at[0] + begin * along);
-        add(at[0] + end * along);
-        add(beside(begin));
-        add(beside(end));
-        if (begin <= apex && apex <= end) add(at[2]);
-        // Rounding to single precision must not make the box smaller.
-        constexpr float limit = std::numeric_limits<float>::infinity();
-        Slab slab{{}, triangle};
-        for (int k = 0; k < 3; ++k) {
-            slab.box.low[k] = std::nextafter(static_cast<float>(low[k] - margin), -limit);
-            slab.box.high[k] = std::nextafter(static_cast<float>(high[k] + margin), limit);
-        }
-        slabs_.push_back(slab);
-    }
-}
-
-void Surface::sort_slabs() {
-    const auto order = order_along_curve(mesh_, slabs_.size(), [&](std::size_t i) {
-        return (glm::dvec3(slabs_[i].box.low) + glm::dvec3(slabs_[i].box.high)) / 2.0;
-    });
-    std::vector<Slab> sorted;
-    sorted.reserve(order.size());
-    for (const std::uint32_t i : order)
-        sorted.push_back(slabs_[i]);
-    slabs_ = std::move(sorted);
-}
-
-void Surface::divide(std::size_t more) {
-    const double length = slab_length(more);
-    slabs_.clear();
-    for (std::uint32_t t = 0; t < size(); ++t) {
-        check_cancelled(t);
-        add_slabs(t, length);
-    }
-    sort_slabs();
-    prisms_.clear();
-    prism_of_node_.clear();
-    build();
-}
-
-void Surface::build() {
-    leaves_ = std::bit_ceil((items() + leaf_size - 1) / leaf_size);
-    boxes_.assign(2 * leaves_, Box());
-    for (std::size_t i = 0; i < items(); ++i) {
-        check_cancelled(i);
-        Box& box = boxes_[leaves_ + i / leaf_size];
-        const Box of_item = box_of(i);
-        box.add(of_item.low);
-        box.add(of_item.high);
-    }
-    for (std::size_t node = leaves_ - 1; node > 0; --node) {
-        for (const std::size_t child : {2 * node, 2 * node + 1}) {
-            boxes_[node].low = glm::min(boxes_[node].low, boxes_[child].low);
-            boxes_[node].high = glm::max(boxes_[node].high, boxes_[child].high);
-        }
-    }
-}
-
-void Surface::add_prisms() {
-    constexpr std::size_t max_leaves = 256;
-    std::vector<std::uint8_t> is_thin(leaves_, 0);
-    parallel_for(leaves_, 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t leaf = begin; leaf < end; ++leaf) {
-            const std::size_t last = std::min((leaf + 1) * leaf_size, size());
-            for (std::size_t t = leaf * leaf_size; t < last; ++t)
-                is_thin[leaf] |= static_cast<std::uint8_t>(extent_of(corners(t)).is_thin());
-        }
-    });
-    struct Piece {
-        std::size_t node, begin, end;
-    };
-    std::vector<Piece> pieces;
-    for (std::size_t leaves = 1; leaves <= std::min(max_leaves, leaves_); leaves *= 2) {
-        check_cancelled();
-        for (std::size_t first = 0; first < leaves_; first += leaves) {
-            const auto begin = is_thin.begin() + static_cast<std::ptrdiff_t>(first);
-            if (std::find(begin, begin + static_cast<std::ptrdiff_t>(leaves), 1) ==
-                begin + static_cast<std::ptrdiff_t>(leaves))
-                continue;
-            pieces.push_back({(leaves_ + first) / leaves, first * leaf_size,
-                              std::min((first + leaves) * leaf_size, size())});
-        }
-    }
-    if (pieces.empty()) return;
-    prism_of_node_.assign(2 * leaves_, no_prism);
-    prisms_.resize(pieces.size());
-    parallel_for(pieces.size(), 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            prism_of_node_[pieces[i].node] = static_cast<std::uint32_t>(i);
-            prisms_[i] = prism_of(pieces[i].begin, pieces[i].end);
-        }
-    });
-}
-
-Prism Surface::prism_of(std::size_t begin, std::size_t end) const {
-    glm::dvec3 along(0.0);
-    glm::dvec3 normal(0.0);
-    for (std::size_t t = begin; t < end; ++t) {
-        const Extent extent = extent_of(corners(t));
-        along += glm::dot(extent.edge, along) < 0.0 ? -extent.edge : extent.edge;
-        normal += glm::dot(extent.normal, normal) < 0.0 ? -extent.normal : extent.normal;
-    }
-    const double length = glm::length(along);
-    along = length > 0.0 ? along / length : glm::dvec3(1, 0, 0);
-    normal -= glm::dot(normal, along) * along;
-    const double height = glm::length(normal);
-    Prism prism;
-    prism.across[0] = height > 0.0 ? normal / height : perpendicular(along);
-    prism.across[1] = glm::cross(along, prism.across[0]);
-    for (std::size_t t = begin; t < end; ++t) {
-        for (const glm::dvec3& corner : corners(t))
-            prism.add(corner);
-    }
-    // Projections are rounded relative to coordinates.
-    const glm::dvec3 largest =
-        glm::max(glm::abs(glm::dvec3(boxes_[1].low)), glm::abs(glm::dvec3(boxes_[1].high)));
-    const double margin = 1e-14 * (largest.x + largest.y + largest.z);
-    for (std::size_t i = 0; i < 2; ++i) {
-        prism.low[i] -= margin;
-        prism.high[i] += margin;
-    }
-    return prism;
-}
-
-/// Finds the nearest triangle; a good guess makes it faster. Ties: the lowest index wins.
-Nearest Surface::nearest(const glm::dvec3& p, std::uint32_t guess, Work& work,
-                         double enough) const {
-    constexpr Work of_triangle = 4;
-    Nearest best{squared_distance(p, corners(guess)), guess};
-    if (best.squared < enough) return best;
-    std::array<std::pair<double, std::size_t>, 64> stack;
-    std::size_t height = 0;
-    stack[height++] = entry(p, 1, best.squared);
-    while (height > 0) {
-        const auto [distance, node] = stack[--height];
-        if (distance > best.squared) continue;
-        if (node >= leaves_) {
-            const std::size_t first = (node - leaves_) * leaf_size;
-            const std::size_t last = std::min(first + leaf_size, items());
-            for (std::size_t i = first; i < last; ++i) {
-                ++work;
-                if (box_of(i).squared_distance(p) > best.squared) continue;
-                work += of_triangle;
-                const std::uint32_t index = triangle_of(i);
-                const double here = squared_distance(p, corners(index));
-                if (here < best.squared || (here == best.squared && index < best.triangle))
-                    best = {here, index};
-            }
-            if (best.squared < enough) return best;
-            continue;
-        }
-        work += 2;
-        std::pair<double, std::size_t> near = entry(p, 2 * node, best.squared);
-        std::pair<double, std::size_t> far = entry(p, 2 * node + 1, best.squared);
-        if (far.first < near.first) std::swap(near, far);
-        if (far.first <= best.squared) stack[height++] = far;
-        if (near.first <= best.squared) stack[height++] = near;
-    }
-    return best;
-}
+constexpr SearchWork max_work = 200'000'000;
 
 /// Returns the mean work of searching for points of another surface, which is at least 1.
 ///
 /// \param most  the maximum number of searches
-Work mean_work(const Surface& from, const Surface& to, std::size_t most) {
+SearchWork mean_work(const SurfaceSearch& from, const SurfaceSearch& to, std::size_t most) {
     const std::size_t count = std::min(most, from.size());
-    Work work = 0;
+    SearchWork work = 0;
     std::uint32_t guess = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const Corners at = from.corners(i * from.size() / count);
@@ -559,7 +110,7 @@ struct RandomSamples {
 };
 
 /// The sum of the areas up to each triangle.
-std::vector<double> area_sums(const Surface& surface) {
+std::vector<double> area_sums(const SurfaceSearch& surface) {
     std::vector<double> sums;
     sums.reserve(surface.size());
     double area = 0.0;
@@ -574,8 +125,9 @@ std::vector<double> area_sums(const Surface& surface) {
 ///
 /// \param areas  area_sums() of `from`
 template <typename Samples>
-void measure_samples(const Surface& from, const Surface& to, std::span<const double> areas,
-                     const Samples& all_samples, DistanceStats& stats) {
+void measure_samples(const SurfaceSearch& from, const SurfaceSearch& to,
+                     std::span<const double> areas, const Samples& all_samples,
+                     DistanceStats& stats) {
     const std::size_t count = all_samples.count;
     stats.area = areas.back();
     if (!(stats.area > 0.0) || count == 0) return;
@@ -586,7 +138,7 @@ void measure_samples(const Surface& from, const Surface& to, std::span<const dou
         count,
         [&](std::size_t begin, std::size_t end) {
             Sums sums;
-            Work work = 0;
+            SearchWork work = 0;
             std::uint32_t guess = 0;
             Samples samples = all_samples.starting_at(begin);
             for (std::size_t i = begin; i < end; ++i) {
@@ -602,7 +154,7 @@ void measure_samples(const Surface& from, const Surface& to, std::span<const dou
                     v = 1.0 - v;
                 }
                 const Corners c = from.corners(t);
-                const Nearest nearest =
+                const NearestTriangle nearest =
                     to.nearest(c[0] + u * (c[1] - c[0]) + v * (c[2] - c[0]), guess, work);
                 guess = nearest.triangle;
                 squared[i] = nearest.squared;
@@ -637,14 +189,14 @@ void measure_samples(const Surface& from, const Surface& to, std::span<const dou
 /// A point of a surface with the nearest triangle of the other one.
 struct Probe {
     glm::dvec3 point;
-    Nearest nearest;
+    NearestTriangle nearest;
 };
 
 /// Searches the interior of triangles for the largest distance.
 struct InteriorSearch {
-    const Surface& to;
-    Work work = 0;
-    Work most;
+    const SurfaceSearch& to;
+    SearchWork work = 0;
+    SearchWork most;
     double slack = 1.004;      ///< Of squares: what is not told apart, 0.2 %.
     double enough = 0.0;       ///< Searches end at a triangle within this squared distance.
     bool was_stopped = false;  ///< The work has exceeded `most`.
@@ -674,7 +226,7 @@ double InteriorSearch::largest(const std::array<Probe, 3>& piece, double known, 
         return corner;
     }
     const glm::dvec3 center = (piece[0].point + piece[1].point + piece[2].point) / 3.0;
-    const Nearest of_center = to.nearest(center, piece[0].nearest.triangle, work, enough);
+    const NearestTriangle of_center = to.nearest(center, piece[0].nearest.triangle, work, enough);
     corner = std::max(corner, of_center.squared);
     if (depth == 0 || is_bounded_by(of_center.triangle)) return corner;
     std::array<Probe, 3> middle;
@@ -702,8 +254,8 @@ struct Largest {
 ///
 /// \param step  only each vertex at a multiple of this index is examined
 /// \param least  squared distances below it are not told apart
-Largest largest_of_vertices(const Surface& from, const Surface& to, std::size_t step, double least,
-                            std::vector<Nearest>& nearest) {
+Largest largest_of_vertices(const SurfaceSearch& from, const SurfaceSearch& to, std::size_t step,
+                            double least, std::vector<NearestTriangle>& nearest) {
     const std::vector<glm::vec3>& positions = from.mesh().positions;
     std::vector<bool> is_used(positions.size(), false);
     for (std::size_t t = 0; t < from.size(); ++t) {
@@ -714,7 +266,7 @@ Largest largest_of_vertices(const Surface& from, const Surface& to, std::size_t 
     const auto pieces =
         measured_in_pieces<Largest>(positions.size(), [&](std::size_t begin, std::size_t end) {
             Largest largest;
-            Work work = 0;
+            SearchWork work = 0;
             std::uint32_t guess = 0;
             for (std::size_t v = begin; v < end; ++v) {
                 check_cancelled();
@@ -741,12 +293,12 @@ Largest largest_of_vertices(const Surface& from, const Surface& to, std::size_t 
 ///
 /// \param work  the mean work of a search
 /// \param least  squared distances below it are not told apart
-void measure_maximum(const Surface& from, const Surface& to, Work work, DistanceStats& stats,
-                     double least = 0.0) {
+void measure_maximum(const SurfaceSearch& from, const SurfaceSearch& to, SearchWork work,
+                     DistanceStats& stats, double least = 0.0) {
     const std::size_t vertices = from.mesh().positions.size();
-    const Work excess = work > little_work ? vertices * work / max_work : 0;
+    const SearchWork excess = work > little_work ? vertices * work / max_work : 0;
     const auto step = static_cast<std::size_t>(1 + excess);
-    std::vector<Nearest> nearest;
+    std::vector<NearestTriangle> nearest;
     const Largest at_vertices = largest_of_vertices(from, to, step, least, nearest);
     const double of_all = std::max(at_vertices.squared, stats.max * stats.max);
     stats.max = std::sqrt(of_all);
@@ -762,7 +314,7 @@ void measure_maximum(const Surface& from, const Surface& to, Work work, Distance
     while (depth < 6 && (from.size() << (2 * depth + 2)) <= max_pieces)
         ++depth;
     // The work for one triangle, on average over a piece of the loop.
-    const Work allowed = std::max<Work>(4 * max_work / from.size(), 2 * little_work);
+    const SearchWork allowed = std::max<SearchWork>(4 * max_work / from.size(), 2 * little_work);
     const auto of_triangles =
         measured_in_pieces<Largest>(from.size(), [&](std::size_t begin, std::size_t end) {
             Largest largest{of_all, 0};
@@ -791,7 +343,7 @@ void measure_maximum(const Surface& from, const Surface& to, Work work, Distance
     stats.max = std::sqrt(squared);
 }
 
-DistanceStats distances_on(const Surface& from, const Surface& to, Work work) {
+DistanceStats distances_on(const SurfaceSearch& from, const SurfaceSearch& to, SearchWork work) {
     constexpr std::size_t min_samples = 1000;
     DistanceStats stats;
     const std::size_t most = std::max<std::size_t>(min_samples, max_work / work);
@@ -805,13 +357,13 @@ DistanceStats distances_on(const Surface& from, const Surface& to, Work work) {
 /// Calls measure(to, work) with the surface, or with its triangles divided if searches take less
 /// work then.
 template <typename Measure>
-DistanceStats measured_with_little_work(const Surface& from, const Surface& to,
+DistanceStats measured_with_little_work(const SurfaceSearch& from, const SurfaceSearch& to,
                                         const Measure& measure) {
     constexpr std::size_t searches = 256;
-    const Work work = mean_work(from, to, searches);
+    const SearchWork work = mean_work(from, to, searches);
     if (work <= little_work) return measure(to, work);
-    Surface divided = to;
-    Work of_divided = work;
+    SurfaceSearch divided = to;
+    SearchWork of_divided = work;
     for (const std::size_t more : {500'000, 2'000'000}) {
         divided.divide(more);
         of_divided = mean_work(from, divided, searches);
@@ -820,15 +372,15 @@ DistanceStats measured_with_little_work(const Surface& from, const Surface& to,
     return of_divided < work ? measure(divided, of_divided) : measure(to, work);
 }
 
-DistanceStats distances(const Surface& from, const Surface& to) {
-    return measured_with_little_work(from, to, [&](const Surface& surface, Work work) {
+DistanceStats distances(const SurfaceSearch& from, const SurfaceSearch& to) {
+    return measured_with_little_work(from, to, [&](const SurfaceSearch& surface, SearchWork work) {
         return distances_on(from, surface, work);
     });
 }
 
-double largest_distance(const Surface& from, const Surface& to, double least) {
+double largest_distance(const SurfaceSearch& from, const SurfaceSearch& to, double least) {
     const DistanceStats stats =
-        measured_with_little_work(from, to, [&](const Surface& surface, Work work) {
+        measured_with_little_work(from, to, [&](const SurfaceSearch& surface, SearchWork work) {
             DistanceStats largest;
             measure_maximum(from, surface, work, largest, least * least);
             return largest;
@@ -837,18 +389,18 @@ double largest_distance(const Surface& from, const Surface& to, double least) {
 }
 
 /// Measures at random samples, fewer if searches take long.
-DistanceStats random_distances(const Surface& from, Surface& to, std::size_t samples,
+DistanceStats random_distances(const SurfaceSearch& from, SurfaceSearch& to, std::size_t samples,
                                std::uint32_t seed) {
     DistanceStats stats;
     if (samples > 0) {
         constexpr std::size_t searches = 16;
-        Work work = mean_work(from, to, searches);
+        SearchWork work = mean_work(from, to, searches);
         if (work > little_work) {
             to.add_prisms();
             work = mean_work(from, to, searches);
         }
         // A few searches far from each other have worse guesses than those of many samples.
-        constexpr Work enough = 2 * little_work;
+        constexpr SearchWork enough = 2 * little_work;
         if (work > enough) samples = std::max<std::size_t>(samples * enough / work, 1);
     }
     measure_samples(from, to, area_sums(from), RandomSamples{samples, seed}, stats);
@@ -860,8 +412,8 @@ DistanceStats random_distances(const Surface& from, Surface& to, std::size_t sam
 SurfaceDistance surface_distance(const Mesh& a, const Mesh& b) {
     validate(a);
     validate(b);
-    Surface surface_a(a);
-    Surface surface_b(b);
+    SurfaceSearch surface_a(a);
+    SurfaceSearch surface_b(b);
     if (surface_a.size() == 0 || surface_b.size() == 0) return {};
     surface_a.add_prisms();
     surface_b.add_prisms();
@@ -872,8 +424,8 @@ SurfaceDistance sampled_distance(const Mesh& a, const Mesh& b, std::size_t sampl
                                  std::size_t samples_b, std::uint32_t seed) {
     validate(a);
     validate(b);
-    Surface surface_a(a);
-    Surface surface_b(b);
+    SurfaceSearch surface_a(a);
+    SurfaceSearch surface_b(b);
     if (surface_a.size() == 0 || surface_b.size() == 0) return {};
     return {random_distances(surface_a, surface_b, samples_a, seed),
             random_distances(surface_b, surface_a, samples_b, seed)};
@@ -884,12 +436,12 @@ double largest_distance(const Mesh& a, const Mesh& b, double least) {
     validate(b);
     if (!(least >= 0.0))
         throw InvalidInput(fmt::format("the least distance is {}, but must be at least 0", least));
-    Surface surface_a(a);
-    Surface surface_b(b);
+    SurfaceSearch surface_a(a);
+    SurfaceSearch surface_b(b);
     if (surface_a.size() == 0 || surface_b.size() == 0) return least;
     surface_a.add_prisms();
     surface_b.add_prisms();
-    // What one direction has found need not be found again.
+    // The second direction searches only beyond the result of the first.
     return largest_distance(surface_b, surface_a, largest_distance(surface_a, surface_b, least));
 }
 
