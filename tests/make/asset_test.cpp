@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "relief/mesh/gltf_document.h"
+#include "relief/mesh/model.h"
 #include "relief/mesh/topology.h"
 #include "support/hard_meshes.h"
 #include "support/labels.h"
@@ -412,6 +414,26 @@ TEST_F(WrittenAsset, DiffersFromAnotherOne) {
     other = asset;
     other.mesh.triangles.pop_back();
     EXPECT_EQ(verify_asset(folder / "a.glb", other).count("another number of triangles"), 1U);
+}
+
+// Levels have the texture of the whole mesh: where a chart loses a part of its outline, triangles
+// can share texels. The mesh that was baked never does.
+TEST_F(WrittenAsset, NamesLevelsWhoseTrianglesShareTexels) {
+    for (const std::size_t mesh : {0, 1}) {
+        write_asset(folder / "a.glb", asset, 1);
+        GltfDocument document = test::read_document(folder / "a.glb");
+        // Each vertex gets the texture coordinates of another one.
+        change_triangles(
+            document, std::array{mesh}, NormalMode::keep, [](const TriangleInput& before, Report&) {
+                FramedMesh after = with_frames(before.mesh, {.normals = NormalMode::keep});
+                std::ranges::reverse(after.source_vertex);
+                return after;
+            });
+        document.write(folder / "a.glb");
+        const Report problems = verify_asset(folder / "a.glb", asset);
+        EXPECT_EQ(problems.count("overlapping texture") > 0, mesh == 0);
+        EXPECT_EQ(problems.count("overlapping texture in a level of detail") > 0, mesh == 1);
+    }
 }
 
 TEST_F(WrittenAsset, StopsAtTheSmallestLevel) {

@@ -160,4 +160,8 @@ glm::dvec3 CollapseError::fitted_offset(std::uint32_t vertex, const Ring& ring) 
     return (1.0 + beyond * remainder) * offset;
 }
 
+double CollapseError::plane_distance(std::uint32_t vertex) const {
+    return std::sqrt(std::max(0.0, quadrics_[vertex](input_.point(vertex))) / areas_[vertex]);
+}
+
 }  // namespace relief::detail

@@ -33,7 +33,7 @@ CollapseSurface::CollapseSurface(CollapseInput& input) {
             corner_of_[vertex] = corner;
         }
     }
-    free_memory(topology.triangles);
+    if (!input.fits_positions) free_memory(topology.triangles);
     free_memory(topology.opposite);
     free_memory(input.wedges);
     return_free_memory();

@@ -18,6 +18,7 @@
 #include "portable_math.h"
 #include "relaxed_store.h"
 #include "topology/edge_collapse_parts.h"
+#include "topology/touched_surface.h"
 #include "topology/triangle_distance.h"
 
 namespace relief::detail {
@@ -127,6 +128,13 @@ class Collapser {
     void run_pass(double fraction);
 
     [[nodiscard]] bool may_be_at(std::uint32_t vertex, const Ring& ring, const glm::vec3& position);
+    /// The move of a vertex to where it fits the input.
+    struct Fit {
+        std::uint32_t vertex = none;
+        glm::dvec3 offset{0.0};  ///< In the unit of the points.
+    };
+    [[nodiscard]] std::vector<Fit> best_fits();
+    void shorten_far_moves(std::vector<Fit>& fits) const;
     void fit_positions();
     [[nodiscard]] Obstacles obstacles() const;
 
@@ -712,11 +720,11 @@ bool Collapser::may_be_at(std::uint32_t vertex, const Ring& ring, const glm::vec
     return true;
 }
 
-/// Moves the remaining vertices to where they fit the input best, one after another. Boundaries
-/// stay in place, because another mesh may meet them.
-void Collapser::fit_positions() {
+/// Returns the moves of vertices to where they fit the input best. Boundaries stay in place,
+/// because another mesh may meet them.
+std::vector<Collapser::Fit> Collapser::best_fits() {
     Ring ring;
-    std::vector<bool> has_moved(input_.positions.size(), false);
+    std::vector<Fit> fits;
     for (const std::uint32_t v : alive_) {
         if (surface_.is_removed(v) || (!input_.is_fixed.empty() && input_.is_fixed[v])) continue;
         const bool is_small = surface_.find_ring(v, ring);
@@ -724,13 +732,51 @@ void Collapser::fit_positions() {
         if (!is_small || ring.has_border || !may_move(v, ring) || (flags_[v] & is_linked) != 0)
             continue;
         const glm::dvec3 offset = error_->fitted_offset(v, ring);
-        const glm::vec3 before = input_.positions[v];
-        const glm::vec3 after(input_.center + (input_.point(v) + offset) / input_.scale);
-        if (after == before || !is_finite(after)) continue;
-        if (may_be_at(v, ring, after)) {
-            has_moved[v] = true;
+        if (offset != glm::dvec3(0.0)) fits.push_back({v, offset});
+    }
+    return fits;
+}
+
+/// Shortens the moves to positions that are far from the surface of the input. The planes around a
+/// vertex can meet there, but the surface ends before: beside a step, a spike would result.
+void Collapser::shorten_far_moves(std::vector<Fit>& fits) const {
+    // Convex surfaces need 1.3 distances of planes. A vertex of the input lies on its surface, so
+    // short moves are within the limit.
+    constexpr double max_distances = 1.5;
+    constexpr double rounding = 1e-6;
+    std::vector<std::size_t> long_moves;
+    std::vector<Ball> balls;
+    for (std::size_t i = 0; i < fits.size(); ++i) {
+        const Fit& fit = fits[i];
+        const double limit = std::max(max_distances * error_->plane_distance(fit.vertex), rounding);
+        if (!(glm::dot(fit.offset, fit.offset) > limit * limit)) continue;
+        long_moves.push_back(i);
+        balls.push_back({input_.point(fit.vertex) + fit.offset, limit});
+    }
+    const std::vector<bool> touch =
+        touch_surface(balls, input_.topology.triangles,
+                      [&](std::uint32_t vertex) { return input_.point(vertex); });
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+        glm::dvec3& offset = fits[long_moves[i]].offset;
+        if (!touch[i]) offset *= balls[i].radius / glm::length(offset);
+    }
+}
+
+/// Moves the remaining vertices to where they fit the input best, one after another.
+void Collapser::fit_positions() {
+    std::vector<Fit> fits = best_fits();
+    shorten_far_moves(fits);
+    Ring ring;
+    std::vector<bool> has_moved(input_.positions.size(), false);
+    for (const Fit& fit : fits) {
+        const glm::vec3 before = input_.positions[fit.vertex];
+        const glm::dvec3 point = input_.point(fit.vertex) + fit.offset;
+        const glm::vec3 after(input_.center + point / input_.scale);
+        if (after == before || !is_finite(after) || !surface_.find_ring(fit.vertex, ring)) continue;
+        if (may_be_at(fit.vertex, ring, after)) {
+            has_moved[fit.vertex] = true;
         } else {
-            input_.positions[v] = before;
+            input_.positions[fit.vertex] = before;
         }
     }
     for (const CornerData& corner : surface_.corners()) {

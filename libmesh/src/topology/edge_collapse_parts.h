@@ -267,6 +267,9 @@ class CollapseError {
     /// position. Directions that the quadric does not determine are left out.
     [[nodiscard]] glm::dvec3 fitted_offset(std::uint32_t vertex, const Ring& ring) const;
 
+    /// Returns the distance (RMS over the area) of a vertex from the planes of its quadric.
+    [[nodiscard]] double plane_distance(std::uint32_t vertex) const;
+
   private:
     [[nodiscard]] std::span<double> attribute_sums(std::uint32_t wedge) {
         return std::span(attribute_sums_).subspan(wedge * sums_per_wedge_, sums_per_wedge_);
