@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import inspect
 import json
 import os
 import pathlib
@@ -302,32 +303,71 @@ def accuracy(
     return report
 
 
+_MAKE_OPTIONS = {"more_sources": "with", "repair": "no-repair", "engine": "for", "more_views": "view", "start": "from"}
+"""The arguments of make() whose names differ from the options of `relief make`, as some are keywords of Python."""
+
+
+def _make_words(name: str, value: Any) -> list[str]:
+    """The words on the command line for an argument of make() that is not its default."""
+    option = "--" + _MAKE_OPTIONS.get(name, name.replace("_", "-"))
+    if isinstance(value, bool):
+        return [option]
+    if name == "size" and not isinstance(value, int):
+        value = "x".join(map(str, value))
+    if name == "layers":
+        value = ",".join(value)
+    values = value if name in ("more_sources", "more_views") else [value]
+    texts = [",".join(map(str, one)) if isinstance(one, tuple) else os.fspath(one) if isinstance(one, os.PathLike)
+             else "none" if one is None else str(one) for one in values]
+    return [f"{option}={text}" for text in texts]
+
+
 @_arguments.checks_keywords
 def make(
     source: str | os.PathLike[str],
     output: str | os.PathLike[str],
     *,
+    more_sources: Sequence[str | os.PathLike[str]] = (),
     triangles: int = 5000,
-    size: int = 2048,
+    crease: float | None = 60.0,
     lods: int = 0,
+    repair: bool = True,
+    remesh: Literal["auto", "always", "never"] = "auto",
+    resolution: int = 256,
+    shell: bool = False,
+    size: int | tuple[int, int] = 2048,
+    padding: int = 8,
+    keep_uvs: bool = False,
+    normal_bits: Literal[8, 16] = 8,
+    samples: Literal[1, 4, 16, 64] = 1,
+    occlusion_rays: int = 32,
+    layers: Sequence[Literal["height", "curvature", "position"]] = (),
     engine: Literal["gltf", "godot", "unity", "unreal"] = "gltf",
     loss: bool = False,
+    more_views: Sequence[tuple[float, float]] = (),
     max_error: float | None = None,
+    max_error_kind: Literal["mean", "rms", "p99", "max"] = "p99",
     max_picture_error: float | None = None,
+    keep_stages: str | os.PathLike[str] | None = None,
+    start: Literal["decimate", "unwrap", "frames", "bake"] | None = None,
 ) -> dict[str, Any]:
     """Make an asset with maps from the file of a dense model, as `relief make` does (docs/make.md).
+
+    The arguments are the options of the command: `more_sources` are further files of the model (--with), `crease` is
+    in degrees, or None for smooth edges, `repair=False` is --no-repair, `engine` is --for, `more_views` are (azimuth,
+    elevation) in degrees (--view), and `start` is --from, the stage at which the files of `keep_stages` are used.
 
     It runs in a process of its own. The result is the report of `relief make --report`: the stages, the numbers of
     triangles, the maps and the findings, with `loss` what was lost, and with limits of it (in degrees, and of FLIP)
     the attempts that held them. Raises ToolError if the tool fails; then no file is changed.
     """
-    options = ["--loss"] if loss else []
-    for option, limit in (("--max-error", max_error), ("--max-picture-error", max_picture_error)):
-        if limit is not None:
-            options += [option, str(limit)]
-    report: dict[str, Any] = run(
-        "relief", "make", source, "-o", output, "--triangles", str(triangles), "--size", str(size),
-        "--lods", str(lods), "--for", engine, *options, report=True)
+    given = dict(locals())
+    options: list[str] = []
+    for parameter in inspect.signature(make).parameters.values():
+        value = given[parameter.name]
+        if parameter.kind is parameter.KEYWORD_ONLY and value != parameter.default:
+            options += _make_words(parameter.name, value)
+    report: dict[str, Any] = run("relief", "make", source, "-o", output, *options, report=True)
     return report
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Results on arrays equal those of the command line on files, bit for bit."""
+import inspect
 import json
 import pathlib
 import shutil
@@ -465,6 +466,59 @@ class Assets(unittest.TestCase):
             self.assertEqual(len(report["levels"]), 1)
             with self.assertRaises(relief.ToolError):
                 relief.make(pathlib.Path(folder) / "none.ply", output)
+
+    # Options of the command that are no arguments of make(): the output and the report are those of the function.
+    NO_ARGUMENTS = {"--output", "--report", "--job", "--force", "--explain", "--help", "--help-json", "--json", "--quiet",
+                    "--strict", "--threads", "--max-memory", "--max-pixels", "--allow-outside"}
+
+    def make_arguments(self):
+        return {name: parameter for name, parameter in inspect.signature(relief.make).parameters.items()
+                if parameter.kind is parameter.KEYWORD_ONLY}
+
+    def test_make_has_all_options_of_the_command(self):
+        tool = json.loads(relief.run("relief", "--help-json"))
+        command, = [command for command in tool["commands"] if command["name"] == "make"]
+        options = {option["name"] for option in command["options"]} - self.NO_ARGUMENTS
+        other_names = relief._MAKE_OPTIONS
+        arguments = {"--" + other_names.get(name, name.replace("_", "-")) for name in self.make_arguments()}
+        self.assertEqual(options - arguments, set(), "options that make() lacks")
+        self.assertEqual(arguments - options, set(), "arguments that the command lacks")
+        words = {option["name"]: option.get("words") for option in command["options"]}
+        for name, option in (("engine", "--for"), ("remesh", "--remesh"), ("max_error_kind", "--max-error-kind"),
+                             ("start", "--from")):
+            for word in words[option]:
+                self.assertIn(f"'{word}'", str(self.make_arguments()[name].annotation), name)
+
+    def test_make_has_the_defaults_of_the_command(self):
+        with tempfile.TemporaryDirectory() as folder:
+            report = relief.make(DATA / "vase.obj", pathlib.Path(folder) / "a.glb", size=16)
+        other_keys = {"more_sources": "with", "engine": "for", "more_views": "views"}
+        for name, parameter in self.make_arguments().items():
+            if name in ("size", "keep_stages", "start"):
+                continue
+            with self.subTest(name):
+                value = report["options"][other_keys.get(name, name)]
+                value = tuple(value) if isinstance(value, list) else value
+                if isinstance(value, float):
+                    self.assertAlmostEqual(value, parameter.default)
+                else:
+                    self.assertEqual(value, parameter.default)
+
+    def test_make_passes_its_arguments(self):
+        given = {"more_sources": [DATA / "urn-low.obj"], "triangles": 200, "crease": None, "lods": 1, "repair": False,
+                 "remesh": "always", "resolution": 16, "shell": True, "padding": 1, "normal_bits": 16, "samples": 4,
+                 "occlusion_rays": 0, "layers": ["height", "position"], "engine": "unity"}
+        with tempfile.TemporaryDirectory() as folder:
+            report = relief.make(DATA / "vase.obj", pathlib.Path(folder) / "a.glb", size=(64, 32),
+                                 keep_stages=folder + "/s", **given)
+            self.assertTrue((pathlib.Path(folder) / "s" / "02-remesh.glb").exists())
+        options = report["options"]
+        self.assertEqual(options["size"], [64, 32])
+        self.assertEqual(options["with"], [str(DATA / "urn-low.obj")])
+        self.assertEqual(options["for"], "unity")
+        self.assertTrue(report["remesh"]["remeshed"])
+        for name in set(given) - {"more_sources", "engine"}:
+            self.assertEqual(options[name], given[name], name)
 
     def test_fidelity(self):
         report = relief.fidelity(DATA / "vase.obj", DATA / "vase.obj", DATA / "urn-low.obj", size=32, samples=1, views=1,

@@ -1,32 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command `relief make`. Tests: tests/tools/relief_make_test.cpp.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "common/error_bound.h"
 #include "common/file_jobs.h"
 #include "common/model_file.h"
 #include "common/options.h"
 #include "common/summary.h"
-#include "common/view_direction.h"
 #include "driver.h"
 #include "make_cache.h"
 #include "make_index.h"
 #include "make_job.h"
 #include "make_job_file.h"
+#include "make_options.h"
 #include "make_page.h"
 
 namespace relief::tools {
@@ -106,90 +99,18 @@ void check_outputs(const MakeCommand& command, const TaskList& list) {
     }
 }
 
-Json options_json(const MakeRequest& request) {
-    const make::AssetOptions& asset = request.asset;
-    Json json = {{"repair", asset.repair.has_value()},
-                 {"remesh", enum_name(asset.remesh)},
-                 {"resolution", asset.resolution},
-                 {"shell", asset.shell},
-                 {"triangles", asset.triangles},
-                 {"size", {asset.size.x, asset.size.y}},
-                 {"padding", asset.padding},
-                 {"keep_uvs", asset.keep_texcoords},
-                 {"samples", asset.samples},
-                 {"occlusion_rays", asset.occlusion ? asset.occlusion_rays : 0},
-                 {"lods", asset.levels},
-                 {"for", enum_name(request.engine)}};
-    json["layers"] =
-        json_list(asset.layers, [](LayerKind kind) -> Json { return make::layer_name(kind); });
-    json["with"] = json_list(request.more_sources, [](const std::filesystem::path& file) -> Json {
-        return file.string();
-    });
-    json["normal_bits"] = asset.normal_bits;
-    json["loss"] = request.measures_loss;
-    json["views"] = json_list(request.more_views, [](const glm::vec3& view) -> Json {
-        return {view.x, view.y, view.z};
-    });
-    json["max_error"] = or_null(request.limits.normals.degrees);
-    json["max_error_kind"] = enum_name(request.limits.normals.statistic());
-    json["max_picture_error"] = or_null(request.limits.flip);
-    json["crease"] = nullptr;
-    if (asset.crease_angle) json["crease"] = *asset.crease_angle * 180.0 / std::numbers::pi;
-    return json;
-}
-
 /// Returns whether the report is an HTML page.
 bool has_page(const ReportOptions& report) {
     return report.file && extension_of(*report.file) == ".html";
 }
 
-/// "height,curvature"
-std::string names_of_layers(const std::vector<LayerKind>& layers) {
-    std::vector<std::string> names;
-    for (const LayerKind kind : layers)
-        names.push_back(make::layer_name(kind));
-    return fmt::format("{}", fmt::join(names, ","));
-}
-
-/// Returns whether the options of remeshing have an effect.
-bool can_remesh(const make::AssetOptions& asset) {
-    return asset.remesh != make::Remeshing::never && !asset.keep_texcoords;
-}
-
 /// The line that repeats a job, with all options that change the asset.
 std::string repeating_line(const MakeRequest& request, const Job& job) {
-    const make::AssetOptions& asset = request.asset;
-    std::string line = fmt::format(
-        "relief make {} -o {} --triangles {} --size {}x{} --padding {} --crease {}",
-        quoted(job.input), quoted(job.output), asset.triangles, asset.size.x, asset.size.y,
-        asset.padding,
-        asset.crease_angle ? fmt::format("{:.6g}", *asset.crease_angle * 180.0 / std::numbers::pi)
-                           : "none");
-    if (!asset.repair) line += " --no-repair";
-    line += fmt::format(" --remesh {}", enum_name(asset.remesh));
-    if (can_remesh(asset)) {
-        line += fmt::format(" --resolution {}", asset.resolution);
-        if (asset.shell) line += " --shell";
-    }
-    if (asset.keep_texcoords) line += " --keep-uvs";
-    for (const std::filesystem::path& file : request.more_sources)
-        line += " --with " + quoted(file);
-    if (!asset.layers.empty()) line += " --layers " + names_of_layers(asset.layers);
-    if (asset.normal_bits != 8) line += fmt::format(" --normal-bits {}", asset.normal_bits);
+    std::string line = fmt::format("relief make {} -o {}{}", quoted(job.input), quoted(job.output),
+                                   options_line(request));
     if (request.stages_folder)
         line += fmt::format(" --keep-stages {}", quoted(*request.stages_folder));
     if (!request.from.empty()) line += fmt::format(" --from {}", request.from);
-    if (request.measures_loss) line += " --loss";
-    for (const glm::vec3& view : request.more_views)
-        line += " --view " + view_text(view);
-    const LossLimits& limits = request.limits;
-    if (limits.normals.degrees) line += fmt::format(" --max-error {}", *limits.normals.degrees);
-    if (limits.normals.kind)
-        line += fmt::format(" --max-error-kind {}", enum_name(*limits.normals.kind));
-    if (limits.flip) line += fmt::format(" --max-picture-error {}", *limits.flip);
-    line += fmt::format(" --samples {} --occlusion-rays {} --lods {} --for {}", asset.samples,
-                        asset.occlusion ? asset.occlusion_rays : 0, asset.levels,
-                        enum_name(request.engine));
     return line;
 }
 
@@ -297,26 +218,6 @@ ExitCode make_all(const CLI::App& app, const MakeCommand& command, const TaskLis
     return code;
 }
 
-/// \throws UsageError if options of an asset have no effect or contradict others
-void check_asset_options(const CLI::App& app, const MakeRequest& request) {
-    const make::AssetOptions& asset = request.asset;
-    if (asset.keep_texcoords && asset.remesh == make::Remeshing::always) {
-        throw UsageError("--remesh always and --keep-uvs contradict each other",
-                         "a closed surface needs new texture coordinates");
-    }
-    if (!request.more_views.empty() && !request.measures_loss && !request.limits.any()) {
-        throw UsageError("--view: has no effect, because no loss is measured",
-                         "add --loss or a limit of it");
-    }
-    if (can_remesh(asset)) return;
-    for (const char* option : {"--resolution", "--shell"}) {
-        if (is_given(app, option)) {
-            throw UsageError(fmt::format("{}: has no effect, because nothing is remeshed", option),
-                             "leave it out");
-        }
-    }
-}
-
 /// \throws UsageError if --from contradicts other options
 void check_start(const MakeCommand& command) {
     const MakeRequest& request = command.request;
@@ -331,8 +232,6 @@ void check_start(const MakeCommand& command) {
         throw UsageError(option + ": --keep-uvs leaves out this stage", "continue at frames");
 }
 
-void add_asset_options(CLI::App& app, MakeRequest& request);
-
 /// Reads the job file. \throws UsageError if there are options that it has for each asset
 TaskList read_tasks(const CLI::App& app, const MakeCommand& command) {
     const std::filesystem::path& file = *command.job_file;
@@ -342,17 +241,14 @@ TaskList read_tasks(const CLI::App& app, const MakeCommand& command) {
             "leave out FILE and -o");
     }
     refuse_given(app, {"--keep-stages", "--from"}, "a single asset", "leave out --job");
-    CLI::App options;
-    MakeRequest unused;
-    add_asset_options(options, unused);
-    for (const CLI::Option* option : options.get_options()) {
-        const std::string name = option->get_name();
-        if (name != "--help" && is_given(app, name)) {
+    for (const MakeOption& option : make_options()) {
+        const std::string name = fmt::format("--{}", option.name);
+        if (is_given(app, name)) {
             throw UsageError(fmt::format("{}: options of assets are in the file of --job", name),
                              "write them into its \"defaults\"");
         }
     }
-    TaskList list{read_job_file(file, add_asset_options, check_asset_options), false, {}};
+    TaskList list{read_job_file(file), false, {}};
     for (const MakeTask& task : list.tasks)
         check_formats(task.job);
     return list;
@@ -384,156 +280,8 @@ ExitCode make(const CLI::App& app, const MakeCommand& command) {
                           : make_all(app, command, list, head);
 }
 
-/// Parses "height,curvature".
-std::vector<LayerKind> parse_layers(const std::string& subject, const std::string& text) {
-    const Choices<LayerKind> choices = {{"height", LayerKind::height},
-                                        {"curvature", LayerKind::curvature},
-                                        {"position", LayerKind::position}};
-    std::vector<LayerKind> layers;
-    std::istringstream names(text);
-    for (std::string name; std::getline(names, name, ',');) {
-        const auto kind = parse_choice<LayerKind>(subject, name, choices);
-        if (std::ranges::find(layers, kind) != layers.end())
-            throw UsageError(fmt::format("{}: {} is named twice", subject, name));
-        layers.push_back(kind);
-    }
-    if (layers.empty()) throw UsageError(subject + ": names no layer");
-    return layers;
-}
-
-/// Parses "2048" or "2048x1024".
-glm::ivec2 parse_map_size(const std::string& subject, const std::string& text) {
-    if (text.find('x') != std::string::npos) return parse_size(subject, text);
-    return glm::ivec2(parse_integer(subject, text, 16, 16384));
-}
-
 Choices<std::string> start_choices() {
     return {{"decimate", "decimate"}, {"unwrap", "unwrap"}, {"frames", "frames"}, {"bake", "bake"}};
-}
-
-/// Adds the options that each asset of a job file can have.
-void add_asset_options(CLI::App& app, MakeRequest& request) {
-    make::AssetOptions& asset = request.asset;
-    const std::string shape = "Shape";
-    add_value(app, "--triangles", "N", "The number of triangles of the asset. Default: 5000.",
-              [&asset](const std::string& subject, const std::string& text) {
-                  asset.triangles = static_cast<std::size_t>(
-                      parse_integer(subject, text, 1, std::numeric_limits<int>::max()));
-              })
-        .group(shape);
-    add_value(app, "--crease", "DEGREES",
-              "Edges with a larger angle between their triangles are hard: normals differ on both "
-              "sides, and charts end there. none: all edges are smooth. Default: 60.",
-              [&asset](const std::string& subject, const std::string& text) {
-                  if (text == "none") {
-                      asset.crease_angle.reset();
-                      return;
-                  }
-                  asset.crease_angle =
-                      parse_number(subject, text, {0.0, 180.0, "degrees"}) * std::numbers::pi / 180;
-              })
-        .group(shape);
-    add_value(app, "--lods", "N",
-              "The number of levels of detail below the asset, 0 to 16. Each has half the "
-              "triangles of the one before, and the same maps. Default: 0.",
-              [&asset](const std::string& subject, const std::string& text) {
-                  asset.levels = static_cast<std::size_t>(parse_integer(subject, text, 0, 16));
-              })
-        .group(shape);
-    add_switch(
-        app, "--no-repair",
-        "Keep the triangles as they are, apart from those without an area or finite positions. "
-        "Otherwise equal vertices are merged, repeated triangles removed, parts oriented "
-        "outwards and non-manifold edges cut (relief-mesh repair).",
-        [&asset] { asset.repair.reset(); })
-        .group(shape);
-    add_choice(app, "--remesh", asset.remesh, enum_choices<make::Remeshing>(),
-               "Replace the triangles by a closed surface before they are decimated "
-               "(relief-mesh remesh): always; never; or if one of four printed figures exceeds its "
-               "limit and the surface is near enough (auto). Maps still show the model. Default: "
-               "auto.")
-        .group(shape);
-    add_value(app, "--resolution", "N",
-              "The number of cells of --remesh along the longest side, 8 to 1024. Default: 256.",
-              [&asset](const std::string& subject, const std::string& text) {
-                  asset.resolution = parse_integer(subject, text, 8, 1024);
-              })
-        .group(shape);
-    add_switch(app, "--shell", asset.shell,
-               "With --remesh, everything within 0.75 cells of a triangle is solid, so that open "
-               "surfaces become shells 1.5 cells thick. Default: only what triangles enclose is "
-               "solid, and sheets vanish.")
-        .group(shape);
-    const std::string maps = "Maps";
-    add_value(app, "--size", "N|WxH", "The size of the maps in texels. Default: 2048.",
-              [&asset](const std::string& subject, const std::string& text) {
-                  asset.size = parse_map_size(subject, text);
-              })
-        .group(maps);
-    add_value(app, "--padding", "N",
-              "The distance of charts in texels, and the width of the padding around them, 0 to "
-              "256. Default: 8.",
-              [&asset](const std::string& subject, const std::string& text) {
-                  asset.padding = parse_integer(subject, text, 0, 256);
-              })
-        .group(maps);
-    add_switch(app, "--keep-uvs", asset.keep_texcoords,
-               "Keep the texture coordinates of the model instead of computing new ones. They must "
-               "not overlap.")
-        .group(maps);
-    add_choice<int>(app, "--normal-bits", {{"8", 8}, {"16", 16}},
-                    "The bits of the normal map. Few programs read more than 8 from glTF files. "
-                    "Default: 8, and 16 if --max-error needs them.",
-                    [&asset](int bits) { asset.normal_bits = bits; })
-        .group(maps);
-    add_value(app, "--samples", "N",
-              "The rays of a texel for normals and colors: 1, 4, 16 or 64. Default: 1.",
-              [&asset](const std::string& subject, const std::string& text) {
-                  asset.samples = parse_choice<int>(subject, text,
-                                                    {{"1", 1}, {"4", 4}, {"16", 16}, {"64", 64}});
-              })
-        .group(maps);
-    add_value(app, "--occlusion-rays", "N",
-              "The rays of a texel of the occlusion map, which has a quarter of their size, 0 "
-              "to 4096. 0: there is no occlusion map. Default: 32.",
-              [&asset](const std::string& subject, const std::string& text) {
-                  asset.occlusion_rays = parse_integer(subject, text, 0, 4096);
-                  asset.occlusion = asset.occlusion_rays > 0;
-              })
-        .group(maps);
-    add_value(app, "--layers", "NAMES",
-              "Also write further layers, from the same rays, as PNG files of 16 bits beside the "
-              "asset: height (of the model above the asset), curvature, position; several are "
-              "separated by commas.",
-              [&asset](const std::string& subject, const std::string& text) {
-                  asset.layers = parse_layers(subject, text);
-              })
-        .group(maps);
-    const std::string output = "Output";
-    add_choice(app, "--for", request.engine, enum_choices<Engine>(),
-               "The engine. unity and unreal: also write maps as PNG files beside the asset, with "
-               "the names, channels and green of the engine. Default: gltf.")
-        .group(output);
-    add_switch(
-        app, "--loss", request.measures_loss,
-        "Measure what was lost: differences of pictures (FLIP) with three lights, degrees "
-        "between normals and pixels between silhouettes, in 12 views, after each stage, and "
-        "distances between the surfaces. Needs OpenGL, also without a GPU. With --report "
-        "NAME.html, the report is a page with pictures of the "
-        "source and the asset, also without --loss; for a folder, an index with a picture of "
-        "each asset, worst first.")
-        .group(output);
-    add_view_option(app, request.more_views).group(output);
-    LossLimits& limits = request.limits;
-    add_error_bound(app, limits.normals, output,
-                    "The largest angle between normals of the source and the asset, which 99 % of "
-                    "the pixels of --loss do not exceed. The asset gets more triangles, up to "
-                    "those of the source, larger maps, up to 8192, or normals of 16 bits, from "
-                    "--triangles and --size on, in at most 6 attempts. If the limit does not hold "
-                    "then, nothing is written.");
-    add_number(app, "--max-picture-error", "FLIP", limits.flip, {1e-4, 1.0, ""},
-               "The same for the largest mean FLIP of the three lights. Both limits can be given.")
-        .group(output);
 }
 
 void add_make_options(CLI::App& app, MakeCommand& command) {
@@ -541,15 +289,6 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
               "IN OUT: the dense model to read (.glb .gltf .obj .ply .stl .off) and the asset to "
               "write (.glb .gltf). With -o: any number of models to read. Skinned and animated "
               "models are refused.");
-    add_repeatable(
-        app, "--with", "FILE",
-        "A further file of the dense model, in the same space as IN. Can be repeated. Only "
-        "for one asset.",
-        [&command](const std::string&, const std::string& text) {
-            readable_format(text);
-            command.request.more_sources.emplace_back(text);
-        })
-        .group("Source");
     const std::string output = "Output";
     add_value(
         app, "-o,--output", "PATH",

@@ -200,7 +200,7 @@ Json stages_json(const MadeAsset& made, const Stages& stages) {
 class FileMaker {
   public:
     FileMaker(const MakeRequest& request, const Job& job, Stages& stages)
-        : request_(request), job_(job), stages_(stages), options_(request.asset) {}
+        : request_(request), job_(job), stages_(stages) {}
 
     MadeAsset run();
 
@@ -216,10 +216,10 @@ class FileMaker {
     [[nodiscard]] bool holds_limits();
     void grow(const GrowthStep& step);
 
-    const MakeRequest& request_;
+    MakeRequest request_;  ///< With what grows until limits hold.
     const Job& job_;
     Stages& stages_;
-    make::AssetOptions options_;
+    make::AssetOptions& options_ = request_.asset;
     make::AssetSource source_;
     std::unique_ptr<LossMeter> meter_;              ///< Created when it is needed.
     bool only_codes_differ_ = false;                ///< The asset is that of the last attempt.
@@ -245,7 +245,7 @@ void FileMaker::read() {
     made_.inputs = names_of(opened.files());
     if (request_.from.empty()) return;
     Report report;
-    options_.start = read_start(*request_.stages_folder, request_.from, options_, made_.inputs,
+    options_.start = read_start(*request_.stages_folder, request_.from, request_, made_.inputs,
                                 source_.origin, report);
     made_.findings.add("read", report);
 }
@@ -280,7 +280,7 @@ void FileMaker::make_once() {
             for (const std::filesystem::path& file : kept->write_maps(made_.asset))
                 made_.files.push_back(file);
             made_.files.push_back(
-                write_stage_record(*request_.stages_folder, made_.asset, options_, made_.inputs));
+                write_stage_record(*request_.stages_folder, made_.asset, request_, made_.inputs));
         }
         made_.levels = about(job_.input, [&] {
             return make::write_asset(job_.output, made_.asset, options_.levels, report);

@@ -16,6 +16,7 @@
 
 #include "common/text.h"
 #include "files.h"
+#include "make_options.h"
 
 namespace relief::tools {
 namespace {
@@ -135,8 +136,7 @@ class KeyLines : public nlohmann::json_sax<Json> {
 /// A job file with the lines of its keys.
 class JobFile {
   public:
-    JobFile(const std::filesystem::path& file, const AddAssetOptions& add,
-            const CheckAssetOptions& check);
+    explicit JobFile(const std::filesystem::path& file);
 
     [[nodiscard]] std::vector<MakeTask> tasks() const;
 
@@ -147,27 +147,23 @@ class JobFile {
                                      const char* kind) const;
     [[nodiscard]] MakeTask task(const Json& asset, const std::string& path,
                                 const Json& defaults) const;
-    [[nodiscard]] std::string argument(const CLI::App& app, const std::string& key,
-                                       const Json& value, const std::string& path) const;
+    [[nodiscard]] std::vector<std::string> arguments(const CLI::App& app, const MakeOption& option,
+                                                     const Json& value,
+                                                     const std::string& path) const;
     [[nodiscard]] std::string path_of(const Json& asset, const char* name,
                                       const std::string& path) const;
     void check_keys(const Json& object, const std::string& path,
                     const std::vector<std::string>& known) const;
 
     std::filesystem::path file_;
-    const AddAssetOptions& add_;
-    const CheckAssetOptions& check_;
     std::string text_;
     const char* reached_ = nullptr;
     KeyLines lines_;
     Json json_;
 };
 
-JobFile::JobFile(const std::filesystem::path& file, const AddAssetOptions& add,
-                 const CheckAssetOptions& check)
+JobFile::JobFile(const std::filesystem::path& file)
     : file_(file),
-      add_(add),
-      check_(check),
       text_(relief::detail::read_file(file)),
       reached_(text_.data()),
       lines_(text_, &reached_) {
@@ -202,16 +198,26 @@ const Json& JobFile::member(const char* name, bool (Json::*is_kind)() const noex
     return *found;
 }
 
-/// Returns the argument of the command line for a key; empty if a switch is off.
-std::string JobFile::argument(const CLI::App& app, const std::string& key, const Json& value,
-                              const std::string& path) const {
-    const bool is_switch = app.get_option("--" + key)->get_items_expected_max() == 0;
-    if (is_switch) {
+/// Returns the arguments of the command line for a key; none if a switch is off.
+std::vector<std::string> JobFile::arguments(const CLI::App& app, const MakeOption& option,
+                                            const Json& value, const std::string& path) const {
+    const std::string name = fmt::format("--{}", option.name);
+    if (app.get_option(name)->get_items_expected_max() == 0) {
         if (!value.is_boolean()) throw fault(path, "is neither true nor false");
-        return value.get<bool>() ? "--" + key : "";
+        return value.get<bool>() ? std::vector<std::string>{name} : std::vector<std::string>{};
     }
-    if (!value.is_string() && !value.is_number()) throw fault(path, "is neither text nor a number");
-    return fmt::format("--{}={}", key, value.is_string() ? value.get<std::string>() : value.dump());
+    std::vector<Json> values = {value};
+    if (value.is_array() && option.values != OptionValues::one)
+        values.assign(value.begin(), value.end());
+    std::vector<std::string> result;
+    for (const Json& one : values) {
+        if (!one.is_string() && !one.is_number()) throw fault(path, "is neither text nor a number");
+        std::string text = one.is_string() ? one.get<std::string>() : one.dump();
+        if (option.values == OptionValues::files)
+            text = (file_.parent_path() / text).lexically_normal().string();
+        result.push_back(fmt::format("{}={}", name, text));
+    }
+    return result;
 }
 
 std::string JobFile::path_of(const Json& asset, const char* name, const std::string& path) const {
@@ -224,7 +230,7 @@ std::string JobFile::path_of(const Json& asset, const char* name, const std::str
 MakeTask JobFile::task(const Json& asset, const std::string& path, const Json& defaults) const {
     MakeTask result;
     CLI::App app;
-    add_(app, result.request);
+    add_asset_options(app, result.request);
     const auto parse = [&](const std::string& place, std::vector<std::string> arguments) {
         try {
             app.clear();
@@ -236,10 +242,8 @@ MakeTask JobFile::task(const Json& asset, const std::string& path, const Json& d
         }
     };
     std::vector<std::string> keys;
-    for (const CLI::Option* option : app.get_options()) {
-        if (!option->get_lnames().empty() && option->get_lnames().front() != "help")
-            keys.push_back(option->get_lnames().front());
-    }
+    for (const MakeOption& option : make_options())
+        keys.emplace_back(option.name);
     check_keys(defaults, "defaults", keys);
     std::vector<std::string> known = {"input", "output"};
     known.insert(known.end(), keys.begin(), keys.end());
@@ -252,20 +256,24 @@ MakeTask JobFile::task(const Json& asset, const std::string& path, const Json& d
     result.job.output = outputs / result.job.input.filename().replace_extension(".glb");
     if (asset.contains("output")) result.job.output = outputs / path_of(asset, "output", path);
     result.job.output = result.job.output.lexically_normal();
-    std::vector<std::string> arguments;
-    for (const std::string& key : keys) {
+    std::vector<std::string> all;
+    for (const MakeOption& option : make_options()) {
+        const std::string key(option.name);
         const bool is_given = asset.contains(key);
         if (!is_given && !defaults.contains(key)) continue;
         const std::string place = (is_given ? path : "defaults") + "." + key;
-        const std::string given = argument(app, key, (is_given ? asset : defaults)[key], place);
-        if (given.empty()) continue;
-        parse(place, {given});
-        arguments.push_back(given);
+        const std::vector<std::string> given =
+            arguments(app, option, (is_given ? asset : defaults)[key], place);
+        for (const std::string& argument : given)
+            parse(place, {argument});
+        all.insert(all.end(), given.begin(), given.end());
     }
     // All together, for options that contradict each other.
-    parse(path, arguments);
+    result.request = {};
+    std::ranges::reverse(all);  // CLI11 takes the last one first.
+    parse(path, all);
     try {
-        check_(app, result.request);
+        check_asset_options(app, result.request);
     } catch (const UsageError& error) {
         throw fault(path, error.what());
     }
@@ -290,9 +298,8 @@ std::vector<MakeTask> JobFile::tasks() const {
 
 }  // namespace
 
-std::vector<MakeTask> read_job_file(const std::filesystem::path& file, const AddAssetOptions& add,
-                                    const CheckAssetOptions& check) {
-    return JobFile(file, add, check).tasks();
+std::vector<MakeTask> read_job_file(const std::filesystem::path& file) {
+    return JobFile(file).tasks();
 }
 
 }  // namespace relief::tools

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -14,34 +13,13 @@
 #include "common/model_file.h"
 #include "files.h"
 #include "make_cache.h"
+#include "make_options.h"
 #include "make_stages.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/model.h"
 
 namespace relief::tools {
 namespace {
-
-/// An option and the first stage whose file depends on it.
-struct StageOption {
-    std::string_view name;
-    std::string_view stage;
-    std::string value;
-};
-
-std::vector<StageOption> stage_options(const make::AssetOptions& options) {
-    const std::string crease =
-        options.crease_angle ? fmt::format("{:g}", *options.crease_angle * 180.0 / std::numbers::pi)
-                             : "none";
-    return {{"no-repair", "repair", fmt::format("{}", !options.repair.has_value())},
-            {"remesh", "remesh", enum_name(options.remesh)},
-            {"resolution", "remesh", fmt::format("{}", options.resolution)},
-            {"shell", "remesh", fmt::format("{}", options.shell)},
-            {"triangles", "decimate", fmt::format("{}", options.triangles)},
-            {"keep-uvs", "decimate", fmt::format("{}", options.keep_texcoords)},
-            {"size", "unwrap", fmt::format("{}x{}", options.size.x, options.size.y)},
-            {"padding", "unwrap", fmt::format("{}", options.padding)},
-            {"crease", "unwrap", crease}};
-}
 
 constexpr const char* record_name = "stages.json";
 constexpr const char* fresh = "run without --from";
@@ -81,8 +59,7 @@ Json read_record(const std::filesystem::path& folder) {
 
 /// \throws FileError if the model or an option of a stage up to `last` has changed
 void check_fresh(const std::filesystem::path& folder, const Json& record, std::string_view last,
-                 const make::AssetOptions& options,
-                 const std::vector<std::filesystem::path>& inputs) {
+                 const MakeRequest& request, const std::vector<std::filesystem::path>& inputs) {
     const auto stale = [&](const std::string& reason) {
         return failure(folder, "is stale: " + reason, fresh);
     };
@@ -97,13 +74,12 @@ void check_fresh(const std::filesystem::path& folder, const Json& record, std::s
     for (const auto& [name, hash] : record["inputs"].items()) {
         if (!names.contains(name)) throw stale(name + " was a part of the model");
     }
-    for (const StageOption& option : stage_options(options)) {
-        if (stage_number(option.stage) > stage_number(last)) continue;
+    for (const MakeOption& option : make_options()) {
+        if (option.stage.empty() || stage_number(option.stage) > stage_number(last)) continue;
         const std::string before = record["options"].value(std::string(option.name), "unknown");
-        if (before != option.value) {
-            throw stale(
-                fmt::format("--{} was {}, and is {} now", option.name, before, option.value));
-        }
+        const std::string now = option_text(option, request);
+        if (before != now)
+            throw stale(fmt::format("--{} was {}, and is {} now", option.name, before, now));
     }
 }
 
@@ -149,16 +125,18 @@ Mesh read_stage_mesh(const std::filesystem::path& file, const glm::dvec3& origin
 }  // namespace
 
 std::filesystem::path write_stage_record(const std::filesystem::path& folder,
-                                         const make::Asset& asset,
-                                         const make::AssetOptions& options,
+                                         const make::Asset& asset, const MakeRequest& request,
                                          const std::vector<std::filesystem::path>& inputs) {
+    const make::AssetOptions& options = request.asset;
     Json record = {{"tool", "relief make"}, {"version", version()}};
     record["inputs"] = Json::object();
     for (const std::filesystem::path& input : inputs)
         record["inputs"][input.string()] = file_hash(input);
     record["options"] = Json::object();
-    for (const StageOption& option : stage_options(options))
-        record["options"][std::string(option.name)] = option.value;
+    for (const MakeOption& option : make_options()) {
+        if (!option.stage.empty())
+            record["options"][std::string(option.name)] = option_text(option, request);
+    }
     const bool is_remeshed =
         options.start ? options.start->is_remeshed : asset.remesh && asset.remesh->is_remeshed;
     record["remeshed"] = is_remeshed;
@@ -183,15 +161,16 @@ std::filesystem::path write_stage_record(const std::filesystem::path& folder,
 }
 
 make::AssetStart read_start(const std::filesystem::path& folder, const std::string& stage,
-                            const make::AssetOptions& options,
+                            const MakeRequest& request,
                             const std::vector<std::filesystem::path>& inputs,
                             const glm::dvec3& origin, Report& report) {
+    const make::AssetOptions& options = request.asset;
     const Json record = read_record(folder);
     make::AssetStart start;
     start.stage = stage;
     start.is_remeshed = record["remeshed"] == true;
     const std::string before = stage_before(stage, options, start.is_remeshed);
-    check_fresh(folder, record, before, options, inputs);
+    check_fresh(folder, record, before, request, inputs);
     const StageFiles files(folder, options);
     check_earlier_files(files, record, before);
     const std::filesystem::path file = files.mesh_file(before);

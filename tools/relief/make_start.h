@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/text.h"
+#include "make_job.h"
 #include "relief/make/asset.h"
 #include "relief/mesh/report.h"
 
@@ -19,8 +20,7 @@ namespace relief::tools {
 /// \param inputs  every file that was read
 /// \return the file
 std::filesystem::path write_stage_record(const std::filesystem::path& folder,
-                                         const make::Asset& asset,
-                                         const make::AssetOptions& options,
+                                         const make::Asset& asset, const MakeRequest& request,
                                          const std::vector<std::filesystem::path>& inputs);
 
 /// Reads the mesh with which a stage begins.
@@ -30,7 +30,7 @@ std::filesystem::path write_stage_record(const std::filesystem::path& folder,
 /// \throws FileError if the file or stages.json is missing, or if the files are stale: the model or
 ///         an option of an earlier stage has changed, or a file of an earlier stage was edited
 make::AssetStart read_start(const std::filesystem::path& folder, const std::string& stage,
-                            const make::AssetOptions& options,
+                            const MakeRequest& request,
                             const std::vector<std::filesystem::path>& inputs,
                             const glm::dvec3& origin, Report& report);
 
