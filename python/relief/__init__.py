@@ -328,6 +328,7 @@ def make(
     output: str | os.PathLike[str],
     *,
     more_sources: Sequence[str | os.PathLike[str]] = (),
+    up: Literal["y", "z", "auto"] = "auto",
     triangles: int = 5000,
     crease: float | None = 60.0,
     lods: int = 0,
@@ -353,8 +354,8 @@ def make(
 ) -> dict[str, Any]:
     """Make an asset with maps from the file of a dense model, as `relief make` does (docs/make.md).
 
-    The arguments are the options of the command: `more_sources` are further files of the model (--with), `crease` is
-    in degrees, or None for smooth edges, `repair=False` is --no-repair, `engine` is --for, `more_views` are (azimuth,
+    The arguments are the options of the command: `more_sources` are further files of the model (--with), `up` is its
+    axis that becomes y (auto: z for STL files), `crease` is in degrees, or None for smooth edges, `repair=False` is --no-repair, `engine` is --for, `more_views` are (azimuth,
     elevation) in degrees (--view), and `start` is --from, the stage at which the files of `keep_stages` are used.
 
     It runs in a process of its own. The result is the report of `relief make --report`: the stages, the numbers of

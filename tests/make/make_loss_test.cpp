@@ -48,6 +48,9 @@ Mesh rippled_ball() {
 /// A source file, and an asset of it.
 class MakeLossTest : public testing::Test {
   protected:
+    [[nodiscard]] DenseModel ball() const {
+        return {.files = {workplace / "ball.ply"}, .crease_angle = 1.0};
+    }
     void SetUp() override {
         Mesh ball = rippled_ball();
         // Colors vary with the height.
@@ -172,7 +175,7 @@ std::vector<AssetFault> asset_faults() {
 
 TEST_LABELS(not_sanitized);
 TEST_F(MakeLossTest, IsRaisedByFaultsOfTheAsset) {
-    LossMeter measuring(std::array{workplace / "ball.ply"}, file(), 1.0, small_pictures());
+    LossMeter measuring(ball(), file(), small_pictures());
     const Fidelity expected = loss_of(measuring, good);
     for (const AssetFault& fault : asset_faults()) {
         make::Asset faulty = good;
@@ -185,7 +188,7 @@ TEST_F(MakeLossTest, IsRaisedByFaultsOfTheAsset) {
 
 TEST_LABELS(not_sanitized);
 TEST_F(MakeLossTest, IsMeasuredAfterEachStage) {
-    LossMeter measuring(std::array{workplace / "ball.ply"}, file(), 1.0, small_pictures());
+    LossMeter measuring(ball(), file(), small_pictures());
     write_asset(file(), good, 2);
     Report report;
     AssetLoss loss = measuring.measure(file(), report);

@@ -29,6 +29,7 @@ using testing::HasSubstr;
 /// A value of each option that is not its default, as in a job file.
 const std::map<std::string, Json>& samples() {
     static const std::map<std::string, Json> all = {{"with", {"b.ply", "c.ply"}},
+                                                    {"up", "z"},
                                                     {"triangles", 321},
                                                     {"crease", "none"},
                                                     {"lods", 3},

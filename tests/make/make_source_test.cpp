@@ -34,8 +34,7 @@ json two_squares(const Workplace& workplace) {
 make::AssetSource read(const Workplace& workplace, const json& document, Findings& findings) {
     workplace.write("out/two.gltf", document.dump());
     SourceFacts facts;
-    const std::filesystem::path file = workplace / "out/two.gltf";
-    return read_source({&file, 1}, facts, findings);
+    return read_source({.files = {workplace / "out/two.gltf"}}, facts, findings);
 }
 
 std::size_t count_of(const Findings& findings, const std::string& kind) {
@@ -134,9 +133,8 @@ TEST(MakeSource, HasTheMaterialsOfSeveralFiles) {
     workplace.write("out/b.mtl", "newmtl m\nKd 0 1 0\nNs 0\nKe 3 0 0\n");
     SourceFacts facts;
     Findings findings;
-    const std::vector<std::filesystem::path> files = {workplace / "out/a.obj",
-                                                      workplace / "out/b.obj"};
-    const make::AssetSource source = read_source(files, facts, findings);
+    const DenseModel model = {.files = {workplace / "out/a.obj", workplace / "out/b.obj"}};
+    const make::AssetSource source = read_source(model, facts, findings);
     EXPECT_EQ(facts.triangles, 4U);
     ASSERT_EQ(source.materials.size(), 2U);
     ASSERT_EQ(source.mesh.material_ranges.size(), 2U);

@@ -120,6 +120,45 @@ TEST(MakeCommand, ReadsEveryFormat) {
     EXPECT_THAT(result.out, HasSubstr("source with fewer triangles than requested"));
 }
 
+TEST(MakeCommand, TurnsTheUpAxisOfStlFilesToThatOfGltf) {
+    const Workplace workplace;
+    // A pyramid with its tip at z = 2.
+    const std::string points[5] = {"0 0 0", "1 0 0", "1 1 0", "0 1 0", "0 0 2"};
+    constexpr int triangles[6][3] = {{0, 2, 1}, {0, 3, 2}, {0, 1, 4},
+                                     {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+    std::string stl = "solid a\n";
+    std::string off = "OFF\n5 6 0\n";
+    for (const std::string& point : points)
+        off += point + "\n";
+    for (const auto& [a, b, c] : triangles) {
+        stl += "facet normal 0 0 0\nouter loop\nvertex " + points[a] + "\nvertex " + points[b] +
+               "\nvertex " + points[c] + "\nendloop\nendfacet\n";
+        off += "3 " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + "\n";
+    }
+    workplace.write("out/a.stl", stl + "endsolid a\n");
+    workplace.write("out/a.off", off);
+    const auto bounds_with = [&](const std::string& arguments, const char* line) {
+        const ProgramResult result =
+            workplace.run("relief make " + arguments + " -o out/a.glb" + quick);
+        EXPECT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_THAT(result.out, HasSubstr(line));
+        const GltfDocument document = test::read_document(workplace / "out/a.glb");
+        return bounds_of(document.mesh(document.triangle_primitives().front()));
+    };
+    const Bounds turned =
+        bounds_with("out/a.stl --loss --report out/a.json", ", z up (y in the asset)");
+    EXPECT_EQ(turned.min, glm::vec3(0.0F, 0.0F, -1.0F));
+    EXPECT_EQ(turned.max, glm::vec3(1.0F, 2.0F, 0.0F));
+    // The source of the loss is rotated alike.
+    const json loss = json::parse(workplace.read("out/a.json"))["loss"];
+    EXPECT_EQ(loss["figures"][0]["name"], "FLIP, studio");
+    EXPECT_LT(loss["figures"][0]["mean"].get<double>(), 0.05);
+    EXPECT_LT(loss["stages"].back()["distance_from_source"]["max"].get<double>(), 1e-6);
+    EXPECT_EQ(bounds_with("out/a.stl --up y", "STL, 6 triangles").max, glm::vec3(1.0F, 1.0F, 2.0F));
+    EXPECT_EQ(bounds_with("out/a.off --up z", "z up").max, turned.max);
+    EXPECT_EQ(bounds_with("out/a.off", "OFF").max, glm::vec3(1.0F, 1.0F, 2.0F));
+}
+
 TEST(MakeCommand, WritesMapsForEngines) {
     const Workplace workplace;
     const ProgramResult result = workplace.run(

@@ -505,7 +505,7 @@ class Assets(unittest.TestCase):
                     self.assertEqual(value, parameter.default)
 
     def test_make_passes_its_arguments(self):
-        given = {"more_sources": [DATA / "urn-low.obj"], "triangles": 200, "crease": None, "lods": 1, "repair": False,
+        given = {"more_sources": [DATA / "urn-low.obj"], "up": "z", "triangles": 200, "crease": None, "lods": 1, "repair": False,
                  "remesh": "always", "resolution": 16, "shell": True, "padding": 1, "normal_bits": 16, "samples": 4,
                  "occlusion_rays": 0, "layers": ["height", "position"], "engine": "unity"}
         with tempfile.TemporaryDirectory() as folder:

@@ -73,7 +73,7 @@ void check_outputs(const MakeCommand& command, const TaskList& list) {
         files.push_back(*command.job_file);
     }
     for (const MakeTask& task : list.tasks) {
-        for (const std::filesystem::path& file : sources_of(task.request, task.job)) {
+        for (const std::filesystem::path& file : dense_model(task.request, task.job).files) {
             inputs.insert(identity_of(file));
             files.push_back(file);
         }
@@ -122,7 +122,7 @@ ExitCode explain(const MakeCommand& command, const TaskList& list) {
         Findings findings;
         Stages stages(command.general.quiet);
         const make::AssetSource source = stages.run(
-            "read", [&] { return read_source(sources_of(task.request, job), facts, findings); });
+            "read", [&] { return read_source(dense_model(task.request, job), facts, findings); });
         print_entry("plan", fmt::format("{} -> {}", job.input.string(), job.output.string()));
         print_entry("", lines_of(plan_of(task.request, source), command.general.threads));
     }

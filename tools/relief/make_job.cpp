@@ -240,7 +240,7 @@ void FileMaker::run_stage(std::string_view name, const std::function<void()>& wo
 void FileMaker::read() {
     Progress opened;
     const ProgressScope scope(opened);
-    source_ = read_source(sources_of(request_, job_), made_.source, made_.findings);
+    source_ = read_source(dense_model(request_, job_), made_.source, made_.findings);
     source_.name = job_.output.stem().string();
     made_.inputs = names_of(opened.files());
     if (request_.from.empty()) return;
@@ -303,8 +303,8 @@ void FileMaker::measure_loss() {
         if (!meter_) {
             shade::FidelityOptions pictures;
             pictures.more_views = request_.more_views;
-            meter_ = std::make_unique<LossMeter>(sources_of(request_, job_), job_.output,
-                                                 options_.crease_angle, pictures);
+            meter_ =
+                std::make_unique<LossMeter>(dense_model(request_, job_), job_.output, pictures);
         }
         made_.loss = meter_->measure(job_.output, report);
     } catch (const shade::GpuError& error) {
@@ -404,10 +404,14 @@ std::vector<std::filesystem::path> outputs_of(const MakeRequest& request,
     return files;
 }
 
-std::vector<std::filesystem::path> sources_of(const MakeRequest& request, const Job& job) {
-    std::vector<std::filesystem::path> files = {job.input};
-    files.insert(files.end(), request.more_sources.begin(), request.more_sources.end());
-    return files;
+DenseModel dense_model(const MakeRequest& request, const Job& job) {
+    DenseModel model;
+    model.files = {job.input};
+    model.files.insert(model.files.end(), request.more_sources.begin(), request.more_sources.end());
+    model.has_z_up = request.up == shade::UpAxis::z ||
+                     (request.up == shade::UpAxis::automatic && extension_of(job.input) == ".stl");
+    model.crease_angle = request.asset.crease_angle;
+    return model;
 }
 
 MadeAsset make_file(const MakeRequest& request, const Job& job, Stages& stages) {
@@ -429,16 +433,18 @@ Summary summary_of(const MakeRequest& request, const Job& job, const MadeAsset& 
     Summary summary;
     summary.add(
         "read",
-        fmt::format("{}{}: {}, {}, {}{}{}", job.input.string(), with_text(request.more_sources),
+        fmt::format("{}{}: {}, {}, {}{}{}{}", job.input.string(), with_text(request.more_sources),
                     made.source.format, counted(made.source.triangles, "triangle"),
                     counted(made.source.vertices, "vertex", "vertices"),
-                    made.source.textures.empty() ? "" : ", ", made.source.textures),
+                    made.source.textures.empty() ? "" : ", ", made.source.textures,
+                    made.source.has_z_up ? ", z up (y in the asset)" : ""),
         {{"input", job.input.string()},
          {"output", job.output.string()},
          {"source",
           {{"format", made.source.format},
            {"triangles", made.source.triangles},
            {"vertices", made.source.vertices},
+           {"up", made.source.has_z_up ? "z" : "y"},
            {"usable_triangles", asset.source_triangles}}}});
     summary.add(
         "asset",

@@ -7,22 +7,24 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "common/file_jobs.h"
 #include "common/summary.h"
+#include "dense_model.h"
 #include "engines.h"
 #include "make_limits.h"
 #include "make_loss.h"
 #include "relief/make/asset.h"
+#include "relief/shade/scene_file.h"
 
 namespace relief::tools {
 
 struct MakeRequest {
     make::AssetOptions asset;
     std::vector<std::filesystem::path> more_sources;  ///< Further files of the dense model.
+    shade::UpAxis up = shade::UpAxis::automatic;      ///< Of the dense model.
     Engine engine = Engine::gltf;
     bool measures_loss = false;  ///< Also without limits.
     /// Directions to the camera of views that are measured besides the 12.
@@ -40,21 +42,20 @@ struct SourceFacts {
     std::string format;  ///< "glTF"; of the first file.
     std::size_t triangles = 0;
     std::size_t vertices = 0;
-    std::string textures;  ///< HighTextures::description()
+    std::string textures;   ///< HighTextures::description()
+    bool has_z_up = false;  ///< In the files; the source has y up.
 };
 
-/// Reads the files of a dense model in world space with their materials and textures.
+/// Reads the files of a dense model in world space, with y up, and their materials and textures.
 ///
 /// Textures that are missing are left out, which is reported; so are cameras, lights, points and
 /// lines, and the properties of materials that an asset cannot have.
-/// \param files  at least one
 /// \throws FileError if one cannot be read, or if it has skins, morph targets or animations, which
 ///         the asset would lose
-make::AssetSource read_source(std::span<const std::filesystem::path> files, SourceFacts& facts,
-                              Findings& findings);
+make::AssetSource read_source(const DenseModel& model, SourceFacts& facts, Findings& findings);
 
-/// All files of the dense model of a job.
-std::vector<std::filesystem::path> sources_of(const MakeRequest& request, const Job& job);
+/// The dense model of a job. If its axis is automatic, the first file decides.
+DenseModel dense_model(const MakeRequest& request, const Job& job);
 
 /// What a stage used besides the time in Stages.
 struct StageUse {

@@ -67,11 +67,9 @@ struct LossMeter::Implementation {
     }
 };
 
-LossMeter::LossMeter(std::span<const std::filesystem::path> sources,
-                     const std::filesystem::path& beside, std::optional<double> crease_angle,
+LossMeter::LossMeter(const DenseModel& source, const std::filesystem::path& beside,
                      const FidelityOptions& options)
-    : implementation_(
-          std::make_unique<Implementation>(source_scene(sources, beside, crease_angle), options)) {}
+    : implementation_(std::make_unique<Implementation>(source_scene(source, beside), options)) {}
 
 LossMeter::~LossMeter() = default;
 

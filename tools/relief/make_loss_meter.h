@@ -6,10 +6,9 @@
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <memory>
-#include <optional>
-#include <span>
 #include <vector>
 
+#include "dense_model.h"
 #include "make_loss.h"
 #include "relief/make/asset.h"
 #include "relief/mesh/image.h"
@@ -21,12 +20,11 @@ namespace relief::tools {
 /// the constructor.
 class LossMeter {
   public:
-    /// \param sources  the files of the dense model, at least one; materials are those of glTF
+    /// \param source  its materials are those of glTF
     /// \param beside  a file in the folder for a temporary file
-    /// \param crease_angle  for a source without normals
     /// \throws Error if nothing can be drawn
-    LossMeter(std::span<const std::filesystem::path> sources, const std::filesystem::path& beside,
-              std::optional<double> crease_angle, const shade::FidelityOptions& options = {});
+    LossMeter(const DenseModel& source, const std::filesystem::path& beside,
+              const shade::FidelityOptions& options = {});
     ~LossMeter();
     LossMeter(const LossMeter&) = delete;
     LossMeter& operator=(const LossMeter&) = delete;

@@ -86,6 +86,22 @@ std::vector<MakeOption> source_options() {
                  words.push_back(quoted(file));
              return words;
          }},
+        {.name = "up",
+         .key = "up",
+         .stage = "repair",
+         .heading = "Source",
+         .add = [](CLI::App& app, const std::string& option,
+                   MakeRequest& request) -> std::optional<AddedOption> {
+             return add_choice(
+                 app, option, request.up, enum_choices<shade::UpAxis>(),
+                 "The axis of the model that points up. In the asset it is y, as glTF requires. "
+                 "auto is z for STL files and y for others, as in relief-view. Default: auto.");
+         },
+         .value = [](const MakeRequest& request) -> Json { return enum_name(request.up); },
+         .words = [](const MakeRequest& request) -> Words {
+             if (request.up == shade::UpAxis::automatic) return {};
+             return {enum_name(request.up)};
+         }},
     };
 }
 

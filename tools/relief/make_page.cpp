@@ -69,7 +69,7 @@ std::string PageWriter::figures() const {
 std::string PageWriter::comparison() const {
     const glm::ivec2 size(960, 720);
     try {
-        AssetScenes scenes(sources_of(request_, job_), job_.output, request_.asset.crease_angle);
+        AssetScenes scenes(dense_model(request_, job_), job_.output);
         const AssetPictures pictures = scenes.draw(made_.asset, size);
         return fmt::format(
             "<figure class=\"comparison\">\n<div class=\"stack\">{}{}</div>\n"

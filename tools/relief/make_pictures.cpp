@@ -55,10 +55,9 @@ struct AssetScenes::Implementation {
     Scene asset;
 };
 
-AssetScenes::AssetScenes(std::span<const std::filesystem::path> sources,
-                         const std::filesystem::path& asset, std::optional<double> crease_angle)
+AssetScenes::AssetScenes(const DenseModel& source, const std::filesystem::path& asset)
     : implementation_(std::make_unique<Implementation>()) {
-    implementation_->source = source_scene(sources, asset, crease_angle);
+    implementation_->source = source_scene(source, asset);
     implementation_->asset = asset_scene(asset);
 }
 

@@ -8,10 +8,9 @@
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <memory>
-#include <optional>
-#include <span>
 #include <string>
 
+#include "dense_model.h"
 #include "relief/make/asset.h"
 #include "relief/mesh/image.h"
 
@@ -28,12 +27,10 @@ struct AssetPictures {
 /// A source and its asset, loaded to be drawn.
 class AssetScenes {
   public:
-    /// \param sources  the files of the dense model, at least one; materials are those of glTF
+    /// \param source  its materials are those of glTF
     /// \param asset   the written file
-    /// \param crease_angle  for a source without normals
     /// \throws Error if nothing can be drawn
-    AssetScenes(std::span<const std::filesystem::path> sources, const std::filesystem::path& asset,
-                std::optional<double> crease_angle);
+    AssetScenes(const DenseModel& source, const std::filesystem::path& asset);
     ~AssetScenes();
     AssetScenes(const AssetScenes&) = delete;
     AssetScenes& operator=(const AssetScenes&) = delete;

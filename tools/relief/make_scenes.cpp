@@ -19,16 +19,16 @@ using namespace relief::shade;
 namespace {
 
 Scene scene_of_file(const std::filesystem::path& file, const std::filesystem::path& beside,
-                    std::optional<double> crease_angle) {
+                    const DenseModel& source) {
     Report ignored;  // The findings about the source are those of the stages.
     SceneOptions options;
-    options.up = UpAxis::y;
+    options.up = source.has_z_up ? UpAxis::z : UpAxis::y;
     if (is_document(readable_format(file))) return load_scene(file, options, ignored);
     MeshFile contents = read_mesh(file, ignored);
     if (contents.mesh.normals.empty()) {
         FrameOptions frames;
         frames.normals = NormalWeight::angle;
-        frames.crease_angle = crease_angle;
+        frames.crease_angle = source.crease_angle;
         contents.mesh = with_frames(std::move(contents.mesh), frames, ignored).mesh;
     }
     if (contents.materials.empty()) {
@@ -72,11 +72,10 @@ void add_scene(Scene& scene, Scene more) {
 
 }  // namespace
 
-Scene source_scene(std::span<const std::filesystem::path> files,
-                   const std::filesystem::path& beside, std::optional<double> crease_angle) {
-    Scene scene = scene_of_file(files.front(), beside, crease_angle);
-    for (const std::filesystem::path& file : files.subspan(1))
-        add_scene(scene, scene_of_file(file, beside, crease_angle));
+Scene source_scene(const DenseModel& source, const std::filesystem::path& beside) {
+    Scene scene = scene_of_file(source.files.front(), beside, source);
+    for (std::size_t i = 1; i < source.files.size(); ++i)
+        add_scene(scene, scene_of_file(source.files[i], beside, source));
     return scene;
 }
 

@@ -5,9 +5,8 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
-#include <span>
 
+#include "dense_model.h"
 #include "relief/shade/scene.h"
 
 namespace relief::tools {
@@ -15,12 +14,9 @@ namespace relief::tools {
 /// Loads the source with the materials that glTF gives it, so that both scenes have the same model
 /// of shading.
 ///
-/// \param files  of the dense model, at least one
 /// \param beside  a file in the folder for a temporary file
-/// \param crease_angle  for a source without normals
 /// \throws FileError, InvalidInput
-shade::Scene source_scene(std::span<const std::filesystem::path> files,
-                          const std::filesystem::path& beside, std::optional<double> crease_angle);
+shade::Scene source_scene(const DenseModel& source, const std::filesystem::path& beside);
 
 /// Loads a written asset. \throws FileError
 shade::Scene asset_scene(const std::filesystem::path& file);

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "common/model_file.h"
+#include "dense_model.h"
 #include "make_job.h"
 #include "mesh_models.h"
 
@@ -269,20 +270,32 @@ std::vector<UsedMaterial> used_materials(const SourceModels& models, make::Asset
     return used;
 }
 
+/// Rotates a source with z up. Its texture coordinates and tangent space stay.
+void turn_up(make::AssetSource& source) {
+    source.origin = y_up(source.origin);
+    for (glm::vec3& position : source.mesh.positions)
+        position = y_up(position);
+    for (glm::vec3& normal : source.mesh.normals)
+        normal = y_up(normal);
+    for (glm::vec4& tangent : source.mesh.tangents)
+        tangent = glm::vec4(y_up(glm::vec3(tangent)), tangent.w);
+}
+
 }  // namespace
 
-make::AssetSource read_source(std::span<const std::filesystem::path> files, SourceFacts& facts,
-                              Findings& findings) {
+make::AssetSource read_source(const DenseModel& model, SourceFacts& facts, Findings& findings) {
     Report report;
     SourceModels models;
-    for (const std::filesystem::path& file : files)
+    for (const std::filesystem::path& file : model.files)
         add_model(file, models, facts, report);
-    const std::filesystem::path& file = files.front();
+    const std::filesystem::path& file = model.files.front();
     make::AssetSource source;
     source.origin = models.origin;
     add_missing_texcoords(models.parts);
     report_lost_normals(models.parts, report);
     source.mesh = about(file, [&] { return joined(std::move(models.parts)); });
+    if (model.has_z_up) turn_up(source);
+    facts.has_z_up = model.has_z_up;
     facts.vertices = source.mesh.positions.size();
     HighTextures textures;
     constexpr HighProperties all{.colors = true, .surfaces = true, .emission = true};
