@@ -21,13 +21,13 @@
 #include <vector>
 
 #include "bench_support.h"
+#include "experiment_parts.h"
 #include "mesh/hard_unwrap_meshes.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/statistics.h"
 #include "relief/mesh/texcoord_quality.h"
 #include "relief/mesh/unwrap.h"
-#include "unwrapping_experiments.h"
 
 namespace relief::bench {
 using accuracy::detail::peak_bytes_of;

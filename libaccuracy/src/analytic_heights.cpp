@@ -35,7 +35,12 @@ void code(std::span<const float> heights, double least, double range, std::span<
     }
 }
 
-}  // namespace
+/// A height in texels and its derivatives to the right and downwards.
+struct HeightSample {
+    double height = 0.0;
+    glm::dvec2 slope{};
+};
+using FieldFunction = std::function<HeightSample(const glm::dvec2& position)>;
 
 HeightSample evaluate_waves(std::span<const HeightWave> waves, const glm::dvec2& position) {
     HeightSample sum;
@@ -47,8 +52,8 @@ HeightSample evaluate_waves(std::span<const HeightWave> waves, const glm::dvec2&
     return sum;
 }
 
-AnalyticHeights sampled_heights(
-    int width, int height, const std::function<HeightSample(const glm::dvec2& position)>& field) {
+/// Samples a field, which is called from several threads, at the texel centers.
+AnalyticHeights sampled_heights(int width, int height, const FieldFunction& field) {
     AnalyticHeights result{make_image(width, height, 1, 32, ColorSpace::data), {}};
     const std::span<float> heights = result.heights.as<float>();
     result.normals.resize(heights.size());
@@ -66,6 +71,8 @@ AnalyticHeights sampled_heights(
     });
     return result;
 }
+
+}  // namespace
 
 AnalyticHeights wave_heights(int width, int height, std::span<const HeightWave> waves) {
     return sampled_heights(
@@ -172,8 +179,6 @@ ErrorStats normal_error(const Image& normals, const AnalyticHeights& reference, 
 namespace {
 
 constexpr int waves_in_all = 24;
-
-using FieldFunction = std::function<HeightSample(const glm::dvec2&)>;
 
 /// Waves of any length, which do not tile.
 std::vector<HeightWave> open_waves(int size, const FieldRecipe& recipe) {

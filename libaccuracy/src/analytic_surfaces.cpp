@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <functional>
 #include <numbers>
 #include <utility>
@@ -28,11 +27,18 @@ struct PlacedPoint {
     glm::dvec3 along_t;
 };
 
-/// A surface by its parameters; it may be closed along each of them.
-struct Parametrised {
+/// A function that is zero on a surface and positive on the side of its normals.
+struct Implicit {
+    double value = 0.0;
+    glm::dvec3 gradient{};
+};
+
+/// A surface by its parameters, and as an implicit function. It may be closed along each parameter.
+struct Surface {
     std::function<PlacedPoint(double s, double t)> at;
-    bool s_closes;
-    bool t_closes;
+    std::function<Implicit(const glm::dvec3&)> off;
+    bool s_closes = false;
+    bool t_closes = false;
 };
 
 constexpr glm::dvec3 ellipsoid_axes(1.0, 0.7, 0.4);
@@ -97,12 +103,6 @@ struct Cubic {
     }
 };
 
-/// A function that is zero on a surface and positive on the side of its normals.
-struct Implicit {
-    double value = 0.0;
-    glm::dvec3 gradient{};
-};
-
 Implicit off_ellipsoid(const glm::dvec3& axes, const glm::dvec3& p) {
     const glm::dvec3 scaled = p / axes;
     return {glm::dot(scaled, scaled) - 1.0, 2.0 * scaled / axes};
@@ -162,32 +162,36 @@ Cubic saddle() {
 
 constexpr double cubic_size = 0.5;
 
-Parametrised parametrised(AnalyticSurface surface, Random& random) {
-    const auto over_square = [](auto at) {
-        return [at](double s, double t) {
-            PlacedPoint point = at(2.0 * s - 1.0, 2.0 * t - 1.0);
-            point.along_s *= 2.0;
-            point.along_t *= 2.0;
-            return point;
-        };
-    };
+Surface ellipsoid(const glm::dvec3& axes) {
+    return {[axes](double s, double t) { return on_ellipsoid(axes, s, t); },
+            [axes](const glm::dvec3& p) { return off_ellipsoid(axes, p); }, true};
+}
+
+/// The graph of a cubic over [-1,1]^2.
+Surface graph(const Cubic& cubic) {
+    return {[cubic](double s, double t) {
+                PlacedPoint point = cubic.at(2.0 * s - 1.0, 2.0 * t - 1.0);
+                point.along_s *= 2.0;
+                point.along_t *= 2.0;
+                return point;
+            },
+            [cubic](const glm::dvec3& p) { return off_cubic(cubic, p); }};
+}
+
+Surface surface_of(AnalyticSurface surface, Random& random) {
     switch (surface) {
         case AnalyticSurface::sphere:
-            return {[](double s, double t) { return on_ellipsoid(glm::dvec3(1.0), s, t); }, true,
-                    false};
+            return ellipsoid(glm::dvec3(1.0));
         case AnalyticSurface::torus:
-            return {on_torus, true, true};
+            return {on_torus, off_torus, true, true};
         case AnalyticSurface::ellipsoid:
-            return {[](double s, double t) { return on_ellipsoid(ellipsoid_axes, s, t); }, true,
-                    false};
+            return ellipsoid(ellipsoid_axes);
         case AnalyticSurface::saddle:
-            return {over_square([cubic = saddle()](double x, double y) { return cubic.at(x, y); }),
-                    false, false};
+            return graph(saddle());
         case AnalyticSurface::cubic:
             break;
     }
-    const Cubic cubic = random_cubic(random, 1, cubic_size);
-    return {over_square([=](double x, double y) { return cubic.at(x, y); }), false, false};
+    return graph(random_cubic(random, 1, cubic_size));
 }
 
 /// Parameters of the sphere and the ellipsoid run clockwise seen from outside.
@@ -225,6 +229,31 @@ Grid grid_of(Triangulation triangulation, int cells) {
     const int columns = stretched ? 4 * cells : cells;
     const int rows = stretched ? std::max(cells / 4, 1) : cells;
     return {columns, rows, columns + 1, rows + 1};
+}
+
+struct GridVertex {
+    int column;
+    int row;
+    bool is_inner;
+    glm::dvec2 place;  ///< The parameters.
+};
+
+/// Inner vertices are displaced at random, except along s in a column that stays.
+std::vector<GridVertex> vertices_of(const Grid& grid, double jitter, Random& random,
+                                    int fixed_column = -1) {
+    std::vector<GridVertex> vertices;
+    for (int r = 0; r < grid.down; ++r) {
+        for (int c = 0; c < grid.across; ++c) {
+            const bool is_inner = (grid.across == grid.columns || (c > 0 && c < grid.columns)) &&
+                                  (grid.down == grid.rows || (r > 0 && r < grid.rows));
+            const bool moves_along_s = is_inner && c != fixed_column;
+            const double move_s = moves_along_s ? random.between(-jitter, jitter) : 0.0;
+            const double move_t = is_inner ? random.between(-jitter, jitter) : 0.0;
+            vertices.push_back(
+                {c, r, is_inner, {(c + move_s) / grid.columns, (r + move_t) / grid.rows}});
+        }
+    }
+    return vertices;
 }
 
 /// Adds two triangles per cell; with a generator, their diagonal is random.
@@ -280,24 +309,16 @@ AnalyticMesh analytic_mesh(AnalyticSurface surface, Triangulation triangulation,
                            std::uint32_t seed) {
     Grid grid = grid_of(triangulation, cells);
     Random random(seed);
-    const Parametrised where = parametrised(surface, random);
-    const auto [columns, rows] = std::pair(grid.columns, grid.rows);
-    if (where.s_closes) grid.across = columns;
-    if (where.t_closes) grid.down = rows;
-
+    const Surface where = surface_of(surface, random);
+    if (where.s_closes) grid.across = grid.columns;
+    if (where.t_closes) grid.down = grid.rows;
     AnalyticMesh result;
     const double jitter = jitter_of(triangulation);
-    for (int r = 0; r < grid.down; ++r) {
-        for (int c = 0; c < grid.across; ++c) {
-            const bool inner = (where.s_closes || (c > 0 && c < columns)) &&
-                               (where.t_closes || (r > 0 && r < rows));
-            const double move_s = inner ? random.between(-jitter, jitter) : 0.0;
-            const double move_t = inner ? random.between(-jitter, jitter) : 0.0;
-            const PlacedPoint point = where.at((c + move_s) / columns, (r + move_t) / rows);
-            result.mesh.positions.emplace_back(point.position);
-            result.normals.push_back(point.normal);
-            result.inner.push_back(inner ? 1 : 0);
-        }
+    for (const GridVertex& vertex : vertices_of(grid, jitter, random)) {
+        const PlacedPoint point = where.at(vertex.place.x, vertex.place.y);
+        result.mesh.positions.emplace_back(point.position);
+        result.normals.push_back(point.normal);
+        result.inner.push_back(vertex.is_inner ? 1 : 0);
     }
     add_cells(result.mesh, grid, jitter > 0.0 ? &random : nullptr);
     if (runs_clockwise(surface)) turn_over(result.mesh);
@@ -311,26 +332,22 @@ TexturedMesh textured_mesh(AnalyticSurface surface, Triangulation triangulation,
         throw InvalidInput(fmt::format(
             "the number of columns of a mirrored texture is {}, but must be even", grid.columns));
     Random random(seed);
-    const Parametrised where = parametrised(surface, random);
+    const Surface where = surface_of(surface, random);
     TexturedMesh result;
     const double jitter = jitter_of(triangulation);
-    for (int r = 0; r < grid.down; ++r) {
-        for (int c = 0; c < grid.across; ++c) {
-            const bool inner = c > 0 && c < grid.columns && r > 0 && r < grid.rows;
-            // The image is mirrored along edges.
-            const bool stays = layout == TextureLayout::mirrored && 2 * c == grid.columns;
-            const double move_s = inner && !stays ? random.between(-jitter, jitter) : 0.0;
-            const double move_t = inner ? random.between(-jitter, jitter) : 0.0;
-            const glm::dvec2 place((c + move_s) / grid.columns, (r + move_t) / grid.rows);
-            // Both sides of a seam have the same position.
-            const PlacedPoint point = where.at(where.s_closes && c == grid.columns ? 0.0 : place.x,
-                                               where.t_closes && r == grid.rows ? 0.0 : place.y);
-            result.mesh.positions.emplace_back(point.position);
-            result.mesh.normals.emplace_back(point.normal);
-            result.mesh.texcoords.emplace_back(texcoord_at(layout, place));
-            result.parameters.push_back(place);
-            result.inner.push_back(inner ? 1 : 0);
-        }
+    // The image is mirrored along edges.
+    const int fixed_column = layout == TextureLayout::mirrored ? grid.columns / 2 : -1;
+    for (const GridVertex& vertex : vertices_of(grid, jitter, random, fixed_column)) {
+        const glm::dvec2& place = vertex.place;
+        // Both sides of a seam have the same position.
+        const bool is_s_end = where.s_closes && vertex.column == grid.columns;
+        const bool is_t_end = where.t_closes && vertex.row == grid.rows;
+        const PlacedPoint point = where.at(is_s_end ? 0.0 : place.x, is_t_end ? 0.0 : place.y);
+        result.mesh.positions.emplace_back(point.position);
+        result.mesh.normals.emplace_back(point.normal);
+        result.mesh.texcoords.emplace_back(texcoord_at(layout, place));
+        result.parameters.push_back(place);
+        result.inner.push_back(vertex.is_inner ? 1 : 0);
     }
     add_cells(result.mesh, grid, jitter > 0.0 ? &random : nullptr);
     if (runs_clockwise(surface)) turn_over(result.mesh);
@@ -342,30 +359,10 @@ TexturedMesh textured_mesh(AnalyticSurface surface, Triangulation triangulation,
 
 std::function<ExactPoint(const glm::dvec3& position)> nearest_on_surface(AnalyticSurface surface,
                                                                          std::uint32_t seed) {
-    std::function<Implicit(const glm::dvec3&)> off;
-    switch (surface) {
-        case AnalyticSurface::sphere:
-            off = [](const glm::dvec3& p) { return off_ellipsoid(glm::dvec3(1.0), p); };
-            break;
-        case AnalyticSurface::torus:
-            off = off_torus;
-            break;
-        case AnalyticSurface::ellipsoid:
-            off = [](const glm::dvec3& p) { return off_ellipsoid(ellipsoid_axes, p); };
-            break;
-        case AnalyticSurface::saddle:
-            off = [cubic = saddle()](const glm::dvec3& p) { return off_cubic(cubic, p); };
-            break;
-        case AnalyticSurface::cubic: {
-            Random random(seed);
-            off = [cubic = random_cubic(random, 1, cubic_size)](const glm::dvec3& p) {
-                return off_cubic(cubic, p);
-            };
-            break;
-        }
-    }
-    return
-        [off = std::move(off)](const glm::dvec3& position) { return nearest_zero(off, position); };
+    Random random(seed);
+    return [off = surface_of(surface, random).off](const glm::dvec3& position) {
+        return nearest_zero(off, position);
+    };
 }
 
 TexturedMesh beveled_plate(double width) {

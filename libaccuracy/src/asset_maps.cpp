@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <glm/trigonometric.hpp>
-#include <string_view>
 
 #include "experiment_parts.h"
 #include "relief/accuracy/asset.h"
@@ -188,24 +187,22 @@ AssetExperiment measure_asset_normals(const Image& normals, const NormalMapStora
     std::vector<Method> methods = {
         as_it_is(file, static_cast<std::size_t>(experiment.items), options)};
     for (const NormalCode& code : normal_codes()) {
-        Method method;
-        method.name = code.name;
-        method.choices = code.choices;
-        method.stored_bytes = code.bytes;
+        Method method{
+            .name = code.name, .choices = code.choices, .stored_bytes = code.stored_bytes};
         std::vector<float> degrees;
         for (const Image& part : parts) {
-            const std::vector<float> more = inner_angles(code.stored(part), directions_of(part), 0);
+            const std::vector<float> more =
+                inner_angles(stored(code, part), directions_of(part), 0);
             degrees.insert(degrees.end(), more.begin(), more.end());
         }
         method.error = known_error(error_stats(std::move(degrees)));
         method.work = [&parts, code] {
             for (const Image& part : parts)
-                static_cast<void>(code.stored(part));
+                stored(code, part);
         };
-        if (!code.file_and_options.empty()) {
+        if (!code.command.empty())
             method.command =
-                fmt::format("relief-bake convert {} {}", options.arguments, code.file_and_options);
-        }
+                fmt::format("relief-bake convert {} {}", options.arguments, code.command);
         methods.push_back(std::move(method));
     }
     finish(asset, methods,
@@ -255,12 +252,10 @@ AssetExperiment measure_asset_bake(const Baker& baker, int size, const AssetOpti
     BakeMapOptions map;
     map.width = size;
     map.height = size;
-    const BakeReference reference(baker, map, max_bake_texels);
-    const std::span<const BakeSampling> ways = default_bake_samplings();
-    const std::vector<NormalMapFormat> formats = default_map_formats({});
-    const Repeats repeats{options.run.is_timed ? options.run.repeats.counted : 1, 0};
-    const std::vector<TimedBakeMeasurement> results =
-        measure_interleaved(reference, ways, formats, repeats);
+    const auto bakes = std::make_shared<TimedBakes>(
+        std::make_shared<const BakeReference>(baker, map, max_bake_texels),
+        default_bake_samplings(), default_map_formats({}));
+    const BakeReference& reference = bakes->reference();
     Experiment& experiment = asset.experiment;
     experiment.question = "How many samples and bits does a map of these meshes need?";
     experiment.ground_truth = fmt::format(
@@ -274,15 +269,14 @@ AssetExperiment measure_asset_bake(const Baker& baker, int size, const AssetOpti
                     baker.low().triangles.size());
     experiment.item = "texel";
     experiment.items = static_cast<double>(reference.texels());
-    std::vector<Method> methods;
-    for (std::size_t way = 0; way < ways.size(); ++way) {
-        for (std::size_t f = 0; f < formats.size(); ++f) {
-            methods.push_back(method_of(ways[way], formats[f], size, options));
-            methods.back().error = known_error(results[way].measurement.errors[f]);
-            if (options.run.is_timed) methods.back().known_time = Timing{results[way].seconds[f]};
-        }
-    }
-    finish(asset, methods, {.negligible_error = invisible_degrees}, options);
+    const std::vector<Method> methods =
+        methods_of(bakes, [&](const BakeSampling& way, const NormalMapFormat& format) {
+            return method_of(way, format, size, options);
+        });
+    AssetOptions timed = options;
+    timed.costs = {.one_thread = false, .memory = false};
+    timed.run.repeats.warm_up = 0;
+    finish(asset, methods, {.negligible_error = invisible_degrees}, timed);
     return asset;
 }
 

@@ -11,6 +11,7 @@
 #include <glm/trigonometric.hpp>
 #include <numbers>
 #include <optional>
+#include <span>
 
 #include "experiment_parts.h"
 #include "relief/accuracy/asset.h"
@@ -149,11 +150,11 @@ ErrorStats errors_of(const std::vector<glm::vec3>& normals, bool are_by_corner, 
 std::vector<glm::vec3> with_creases(const NormalWeighting& weighting, const Mesh& mesh,
                                     const CreaseRule& creases) {
     // Double, because relief-mesh has no option for another arithmetic.
-    if (!creases.has_any()) return normals_by(weighting.weight, Arithmetic::float64, mesh);
+    if (!creases.has_any()) return normals_by(weighting.value, Arithmetic::float64, mesh);
     Report report;
     NormalOptions how;
     how.arithmetic = Arithmetic::float64;
-    return corner_normals(mesh.positions, mesh.triangles, weighting.weight, how, creases.edges,
+    return corner_normals(mesh.positions, mesh.triangles, weighting.value, how, creases.edges,
                           report)
         .normals;
 }
@@ -161,7 +162,7 @@ std::vector<glm::vec3> with_creases(const NormalWeighting& weighting, const Mesh
 std::vector<Method> methods_on(const Mesh& mesh, const CreaseRule& creases,
                                const CornerGroundTruth& ground_truth, const AssetOptions& options) {
     std::vector<Method> methods;
-    for (const NormalWeighting& weighting : normal_weightings) {
+    for (const NormalWeighting& weighting : normal_weightings()) {
         const auto normals = [weighting, &mesh, &creases] {
             return with_creases(weighting, mesh, creases);
         };
@@ -289,45 +290,41 @@ SamplePoints sample_points(const Mesh& mesh) {
     return points;
 }
 
-/// A basis, and how to compute it.
+/// A method and its frames. The first one is the basis that bakers and renderers agree on.
 struct Basis {
-    std::string name;
+    Method method;  ///< Without its error.
     TangentFrames frames;
-    std::function<void()> work{};
-    std::string command{};
-    bool is_convention = false;  ///< The basis that bakers and renderers agree on.
 };
 
 std::vector<Basis> bases_of(const Mesh& mesh, const std::vector<glm::vec4>& stored,
                             const AssetOptions& options) {
     std::vector<Basis> bases;
-    for (const FrameMethod& method : tangent_methods()) {
-        Basis basis{method.name, method.compute(mesh)};
-        if (method.has_work) {
-            basis.work = [method, &mesh] { method.compute(mesh); };
-            basis.command = fmt::format("relief-mesh process {} -o OUT.glb --tangents {}",
-                                        options.arguments, method.name);
-        }
-        basis.is_convention = bases.empty();
-        bases.push_back(std::move(basis));
+    const auto add = [&](const std::string& name, TangentFrames frames) -> Method& {
+        Method method{
+            .name = name, .choices = {{"basis", name}}, .note = "There is no work to time."};
+        return bases.emplace_back(Basis{std::move(method), std::move(frames)}).method;
+    };
+    for (const FrameMethod& one : tangent_methods()) {
+        Method& method = add(one.name, one.compute(mesh));
+        if (!one.has_work) continue;
+        method.note.clear();
+        method.work = [one, &mesh] { one.compute(mesh); };
+        method.command = fmt::format("relief-mesh process {} -o OUT.glb --tangents {}",
+                                     options.arguments, one.name);
     }
     if (stored.empty()) return bases;
-    Basis file_basis{"the file's own", {}};
+    TangentFrames file_frames;
     for (const glm::uvec3& triangle : mesh.triangles) {
         for (int corner = 0; corner < 3; ++corner)
-            file_basis.frames.tangents.push_back(stored[triangle[corner]]);
+            file_frames.tangents.push_back(stored[triangle[corner]]);
     }
-    bases.push_back(std::move(file_basis));
+    add("the file's own", std::move(file_frames));
     return bases;
 }
 
-Method method_of(const Basis& basis, std::vector<float> degrees) {
-    return {.name = basis.name,
-            .choices = {{"basis", basis.name}},
-            .error = known_error(error_stats(std::move(degrees))),
-            .work = basis.work,
-            .note = basis.work ? "" : "There is no work to time.",
-            .command = basis.command};
+Method with_error(Method method, std::vector<float> degrees) {
+    method.error = known_error(error_stats(std::move(degrees)));
+    return method;
 }
 
 void describe(Experiment& experiment, const Mesh& mesh, const SamplePoints& points,
@@ -361,9 +358,9 @@ AssetExperiment from_gradients(const Mesh& mesh, const std::vector<Basis>& bases
             const glm::dmat3 actual = basis_at(mesh, basis.frames, points.samples[i]);
             degrees.push_back(angle_of(actual[0], points.derived[i][0]));
         }
-        methods.push_back(method_of(basis, std::move(degrees)));
+        methods.push_back(with_error(basis.method, std::move(degrees)));
         // A better average is no reason to leave the basis that bakers and renderers agree on.
-        if (!basis.is_convention) methods.back().command.clear();
+        if (methods.size() > 1) methods.back().command.clear();
     }
     finish(asset, methods, {}, options);
     if (asset.recommendation.method) {
@@ -400,13 +397,12 @@ AssetExperiment from_mikktspace(const Mesh& mesh, const std::vector<Basis>& base
             for (const glm::dvec3& texel : tilted_texels)
                 degrees.push_back(angle_of(actual * texel, expected * texel));
         }
-        methods.push_back(method_of(basis, std::move(degrees)));
+        methods.push_back(with_error(basis.method, std::move(degrees)));
     }
     finish(asset, methods, {}, options);
     const Measurement* nearest = nullptr;
-    for (std::size_t i = 0; i < bases.size(); ++i) {
-        const Measurement& one = experiment.measurements[i];
-        if (bases[i].is_convention || one.error.undefined > 0) continue;
+    for (const Measurement& one : std::span(experiment.measurements).subspan(1)) {
+        if (one.error.undefined > 0) continue;
         if (nearest == nullptr || one.error.rms < nearest->error.rms) nearest = &one;
     }
     if (asset.recommendation.method && nearest != nullptr) {

@@ -291,11 +291,9 @@ void detail::finish(AssetExperiment& asset, const std::vector<Method>& methods,
         options.run);
     for (std::size_t i = 0; i < methods.size(); ++i) {
         Measurement& one = asset.experiment.measurements[i];
-        if (methods[i].known_time) one.cost.all_threads = methods[i].known_time;
         if (asset.experiment.reference_error && one.error.count > 0)
             one.expected = ExpectedError{*asset.experiment.reference_error, one.error.rms};
     }
-    mark_pareto_optimal(asset.experiment);
     rule.request = options.request;
     rule.choosable = choosable;
     rule.nominal_costs = nominal_costs;

@@ -10,14 +10,15 @@
 #include <array>
 #include <glm/trigonometric.hpp>
 
-#include "progress_stage.h"
+#include "experiment_parts.h"
+#include "parallel.h"
 #include "relief/accuracy/experiment.h"
 #include "relief/mesh/bake.h"
-#include "relief/mesh/execution.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/texel_coverage.h"
 
 namespace relief::accuracy {
+using namespace relief::accuracy::detail;
 using namespace relief::detail;
 
 namespace {
@@ -87,22 +88,44 @@ std::vector<NormalMapFormat> default_map_formats(const NormalMapFormat& format) 
     return formats;
 }
 
-std::vector<TimedBakeMeasurement> measure_interleaved(const BakeReference& reference,
-                                                      std::span<const BakeSampling> samplings,
-                                                      std::span<const NormalMapFormat> formats,
-                                                      const Repeats& repeats) {
-    std::vector<TimedBakeMeasurement> results(samplings.size());
-    interleave(samplings.size(), repeats, [&](std::size_t i, bool counted) {
-        check_cancelled();
-        TimedBakeMeasurement& one = results[i];
-        one.measurement = measure_bake(reference, samplings[i], formats);
-        one.seconds.resize(formats.size());
-        for (std::size_t f = 0; counted && f < formats.size(); ++f) {
-            one.seconds[f].push_back(one.measurement.cast_seconds +
-                                     one.measurement.code_seconds[f]);
+detail::TimedBakes::TimedBakes(std::shared_ptr<const BakeReference> reference,
+                               std::span<const BakeSampling> samplings,
+                               std::vector<NormalMapFormat> formats)
+    : reference_(std::move(reference)),
+      samplings_(samplings.begin(), samplings.end()),
+      formats_(std::move(formats)),
+      bakes_(samplings_.size()) {}
+
+void detail::TimedBakes::cast(std::size_t sampling) {
+    bakes_[sampling] = {measure_bake(*reference_, samplings_[sampling], formats_),
+                        std::vector<bool>(formats_.size(), false), thread_count()};
+}
+
+const BakeMeasurement& detail::TimedBakes::result(std::size_t sampling) {
+    if (!bakes_[sampling]) cast(sampling);
+    return bakes_[sampling]->measurement;
+}
+
+double detail::TimedBakes::seconds_of_round(std::size_t sampling, std::size_t format) {
+    std::optional<Bake>& bake = bakes_[sampling];
+    if (!bake || bake->is_format_used[format] || bake->threads != thread_count()) cast(sampling);
+    bake->is_format_used[format] = true;
+    return bake->measurement.cast_seconds + bake->measurement.code_seconds[format];
+}
+
+std::vector<Method> detail::methods_of(
+    const std::shared_ptr<TimedBakes>& bakes,
+    const std::function<Method(const BakeSampling&, const NormalMapFormat&)>& described) {
+    std::vector<Method> methods;
+    for (std::size_t s = 0; s < bakes->samplings().size(); ++s) {
+        for (std::size_t f = 0; f < bakes->formats().size(); ++f) {
+            Method& method =
+                methods.emplace_back(described(bakes->samplings()[s], bakes->formats()[f]));
+            method.error = [bakes, s, f] { return bakes->result(s).errors[f]; };
+            method.round = [bakes, s, f] { return bakes->seconds_of_round(s, f); };
         }
-    });
-    return results;
+    }
+    return methods;
 }
 
 namespace {
@@ -136,25 +159,26 @@ void describe(const BakeReference& reference, BakeComparison& result) {
 
 BakeComparison compare_bakes(const Baker& baker, const BakeMapOptions& map,
                              const NormalMapFormat& format) {
-    const BakeReference reference(baker, map, texels_for_table);
+    const auto bakes = std::make_shared<TimedBakes>(
+        std::make_shared<const BakeReference>(baker, map, texels_for_table),
+        default_bake_samplings(), default_map_formats(format));
     BakeComparison result;
-    describe(reference, result);
-    const std::span<const BakeSampling> samplings = default_bake_samplings();
-    const std::vector<NormalMapFormat> formats = default_map_formats(format);
-    const std::vector<TimedBakeMeasurement> timed =
-        measure_interleaved(reference, samplings, formats, {timed_rounds, 0});
-    std::vector<MethodCost> costs;
-    for (std::size_t i = 0; i < samplings.size(); ++i) {
-        std::vector<MeasuredBake> measured = by_format(samplings[i], formats, timed[i].measurement);
-        for (std::size_t f = 0; f < formats.size(); ++f) {
-            measured[f].seconds = time_statistics(timed[i].seconds[f]).median;
-            costs.push_back({measured[f].error.rms, measured[f].seconds, timed[i].seconds[f]});
-            result.measured.push_back(std::move(measured[f]));
+    describe(bakes->reference(), result);
+    RunOptions run;
+    run.repeats = {timed_rounds, 0};
+    const Experiment experiment = detail::measured(
+        {.methods = methods_of(bakes, [](const auto&, const auto&) { return Method(); }),
+         .costs = {.one_thread = false, .memory = false}},
+        run);
+    for (std::size_t i = 0; i < bakes->samplings().size(); ++i) {
+        for (MeasuredBake& one :
+             by_format(bakes->samplings()[i], bakes->formats(), bakes->result(i))) {
+            const Measurement& measurement = experiment.measurements[result.measured.size()];
+            one.seconds = median_seconds(measurement);
+            one.is_pareto_optimal = measurement.is_pareto_optimal;
+            result.measured.push_back(std::move(one));
         }
     }
-    const std::vector<bool> is_optimal = pareto_optimal(costs);
-    for (std::size_t i = 0; i < is_optimal.size(); ++i)
-        result.measured[i].is_pareto_optimal = is_optimal[i];
     return result;
 }
 

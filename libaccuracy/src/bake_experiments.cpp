@@ -104,7 +104,7 @@ BumpySphere::BumpySphere(int stacks) : stacks_(stacks) {
     }
 }
 
-SurfacePoint BumpySphere::on_surface(const glm::dvec3& from, const glm::dvec3& inward) {
+ExactPoint BumpySphere::on_surface(const glm::dvec3& from, const glm::dvec3& inward) {
     // Advance by the distance of the point from the surface; the ray is steep, so this converges.
     double way = 0.0;
     glm::dvec3 at = from;
@@ -117,7 +117,7 @@ SurfacePoint BumpySphere::on_surface(const glm::dvec3& from, const glm::dvec3& i
     return {at, normal_at(angles_of(at))};
 }
 
-SurfacePoint BumpySphere::on_mesh(const glm::dvec3& from, const glm::dvec3& inward) const {
+ExactPoint BumpySphere::on_mesh(const glm::dvec3& from, const glm::dvec3& inward) const {
     const SphereAngles a = angles_of(on_surface(from, inward).position);
     const int slices = 2 * stacks_;
     const auto near_stack = static_cast<int>(std::floor(a.polar / std::numbers::pi * stacks_));
@@ -178,10 +178,6 @@ std::string BumpyBake::description() const {
     return fmt::format("sphere with bumps, {} triangles, for one of {}; map of {} x {} texels",
                        high_.mesh().triangles.size(), baker_.low().triangles.size(), map_.width,
                        map_.height);
-}
-
-double BumpyBake::texels() const {
-    return static_cast<double>(map_.width) * map_.height;
 }
 
 Image BumpyBake::map_by(const BakeSampling& way, const NormalMapFormat& format) const {
@@ -250,152 +246,106 @@ void add_renderings(const BumpyBake& bake, std::span<const BakedMap> maps, Exper
     }
 }
 
-/// The ways to bake of an experiment, each in some formats, and their results. The index of a
-/// method is the index of its way times the number of formats, plus the index of its format.
-class BakedWays {
-  public:
-    BakedWays(std::shared_ptr<const BumpyBake> bake, std::vector<BakeSampling> ways,
-              std::vector<NormalMapFormat> formats)
-        : bake_(std::move(bake)),
-          ways_(std::move(ways)),
-          formats_(std::move(formats)),
-          results_(ways_.size()) {}
+/// The sphere with bumps, and its bakes.
+struct BumpyBakes {
+    std::shared_ptr<const BumpyBake> bake;
+    std::shared_ptr<TimedBakes> timed;
 
-    [[nodiscard]] const BumpyBake& bake() const { return *bake_; }
-    [[nodiscard]] const std::vector<BakeSampling>& ways() const { return ways_; }
-    [[nodiscard]] const std::vector<NormalMapFormat>& formats() const { return formats_; }
-    [[nodiscard]] std::size_t count() const { return ways_.size() * formats_.size(); }
+    BumpyBakes(const std::shared_ptr<const BumpyBake>& one, std::span<const BakeSampling> ways,
+               std::vector<NormalMapFormat> formats)
+        : bake(one),
+          timed(std::make_shared<TimedBakes>(
+              std::shared_ptr<const BakeReference>(one, &one->reference()), ways,
+              std::move(formats))) {}
 
-    [[nodiscard]] std::size_t way_of(std::size_t method) const { return method / formats_.size(); }
-    [[nodiscard]] std::size_t format_of(std::size_t method) const {
-        return method % formats_.size();
+    [[nodiscard]] double rays_per_texel(std::size_t way) const {
+        return static_cast<double>(timed->result(way).rays) /
+               static_cast<double>(timed->reference().texels());
     }
 
-    /// The errors of a way in all formats; the rays are cast once.
-    const BakeMeasurement& result(std::size_t way) {
-        if (!results_[way]) results_[way] = measure_bake(bake_->reference(), ways_[way], formats_);
-        return *results_[way];
+    /// The error of ways first to last (excluded) over their rays.
+    [[nodiscard]] Curve curve(const std::string& name, std::size_t first, std::size_t last,
+                              std::size_t format) const {
+        Curve curve{.method = name};
+        for (std::size_t way = first; way < last; ++way)
+            curve.points.push_back(
+                {rays_per_texel(way), curve_error(timed->result(way).errors[format])});
+        return curve;
     }
-
-    [[nodiscard]] double rays_per_texel(std::size_t way) {
-        return static_cast<double>(result(way).rays) / bake_->texels();
-    }
-
-    /// Seconds for casting rays and encoding together. One cast serves a round of all formats.
-    double seconds_of_round(std::size_t method) {
-        const std::size_t way = way_of(method);
-        const std::size_t format = format_of(method);
-        if (timed_way_ != way || is_format_used_[format]) {
-            timed_ = measure_bake(bake_->reference(), ways_[way], formats_);
-            timed_way_ = way;
-            is_format_used_.assign(formats_.size(), false);
-        }
-        is_format_used_[format] = true;
-        return timed_.cast_seconds + timed_.code_seconds[format];
-    }
-
-  private:
-    std::shared_ptr<const BumpyBake> bake_;
-    std::vector<BakeSampling> ways_;
-    std::vector<NormalMapFormat> formats_;
-    std::vector<std::optional<BakeMeasurement>> results_;
-    BakeMeasurement timed_{};  ///< The last cast of seconds_of_round().
-    std::optional<std::size_t> timed_way_{};
-    std::vector<bool> is_format_used_{};
 };
 
 /// The common part of both experiments.
-PreparedExperiment on_ways(const std::shared_ptr<BakedWays>& baked) {
+PreparedExperiment on_bakes(const BumpyBakes& bakes) {
     PreparedExperiment prepared;
     prepared.report = {
         .ground_truth = fmt::format(
             "The mean of {} rays per texel, not rounded to codes. A test verifies bakes by the "
             "formula of the surface, without the baker's rays.",
-            baked->bake().reference().samples()),
-        .input = baked->bake().description(),
+            bakes.timed->reference().samples()),
+        .input = bakes.bake->description(),
         .error_unit = "degrees",
         .item = "texel",
-        .items = baked->bake().texels()};
+        .items = static_cast<double>(bakes.timed->reference().texels())};
     prepared.costs.memory = false;
-    for (std::size_t i = 0; i < baked->count(); ++i) {
-        const std::string way = name_of(baked->ways()[baked->way_of(i)]);
-        const int bits = baked->formats()[baked->format_of(i)].bits;
-        prepared.methods.push_back(
-            {.name = fmt::format("{}, {}", way, depth_name(bits)),
-             .choices = {{"rays", way}, {"depth", depth_name(bits)}},
-             .error =
-                 [baked, i] {
-                     const std::size_t at = baked->way_of(i);
-                     return MethodError(
-                         baked->result(at).errors[baked->format_of(i)],
-                         fmt::format("{:.2f} rays per texel.", baked->rays_per_texel(at)));
-                 },
-             .round = [baked, i] { return baked->seconds_of_round(i); },
-             .stored_bytes = 3.0 * bits / 8.0});
+    prepared.methods =
+        methods_of(bakes.timed, [](const BakeSampling& way, const NormalMapFormat& format) {
+            return Method{.name = name_of(BakedMap{way, format}),
+                          .choices = {{"rays", name_of(way)}, {"depth", depth_name(format.bits)}},
+                          .stored_bytes = 3.0 * format.bits / 8.0};
+        });
+    for (std::size_t i = 0; i < prepared.methods.size(); ++i) {
+        Method& method = prepared.methods[i];
+        method.error = [bakes, i, error = method.error] {
+            const std::size_t way = i / bakes.timed->formats().size();
+            return MethodError(error().stats,
+                               fmt::format("{:.2f} rays per texel.", bakes.rays_per_texel(way)));
+        };
     }
     return prepared;
 }
 
-/// The error of ways first to last (excluded) over their rays.
-Curve curve_of(const std::string& name, BakedWays& baked, std::size_t first, std::size_t last,
-               std::size_t format) {
-    Curve curve{.method = name};
-    for (std::size_t way = first; way < last; ++way)
-        curve.points.push_back(
-            {baked.rays_per_texel(way), curve_error(baked.result(way).errors[format])});
-    return curve;
-}
-
-void finish_samples(BakedWays& baked, Experiment& report) {
-    constexpr std::size_t in_8 = 0;
-    constexpr std::size_t in_16 = 1;
-    constexpr std::size_t in_floats = 2;
-    const std::vector<BakeSampling>& ways = baked.ways();
+void finish_samples(const BumpyBakes& bakes, Experiment& report) {
+    const std::vector<BakeSampling>& ways = bakes.timed->samplings();
+    const std::vector<NormalMapFormat>& formats = bakes.timed->formats();
     Chart chart{.id = "rays",
                 .title = "Error by rays",
                 .x_label = "rays per texel",
                 .y_label = "RMS error, degrees"};
-    for (const std::size_t format : {in_8, in_16, in_floats}) {
+    for (std::size_t format = 0; format < formats.size(); ++format)
         chart.curves.push_back(
-            curve_of(depth_name(baked.formats()[format].bits), baked, 0, ways.size(), format));
-    }
+            bakes.curve(depth_name(formats[format].bits), 0, ways.size(), format));
     // Sample points are the centers of equal squares: halving their distance quarters the error.
     fit(chart.curves.back(), -1.0);
     report.charts = {std::move(chart)};
     const std::array maps = {BakedMap{ways.front(), {.bits = 8}}, BakedMap{ways[2], {.bits = 8}},
                              BakedMap{ways[2], {.bits = 16}}};
-    add_error_maps(baked.bake(), maps, 2.0, report);
-    add_renderings(baked.bake(), std::span(maps).first(2), report);
+    add_error_maps(*bakes.bake, maps, 2.0, report);
+    add_renderings(*bakes.bake, std::span(maps).first(2), report);
 }
 
 PreparedExperiment by_samples(const std::shared_ptr<const BumpyBake>& bake, bool is_quick) {
     std::vector<BakeSampling> ways = {{1}, {4}, {16}};
     if (!is_quick) ways.push_back({64});
-    const auto baked = std::make_shared<BakedWays>(
-        bake, std::move(ways),
-        std::vector<NormalMapFormat>{{.bits = 8}, {.bits = 16}, {.bits = 32}});
-    PreparedExperiment prepared = on_ways(baked);
+    const BumpyBakes bakes(bake, ways, {{.bits = 8}, {.bits = 16}, {.bits = 32}});
+    PreparedExperiment prepared = on_bakes(bakes);
     prepared.report.question = "How many rays does a texel need, and how many bits?";
     prepared.compared = names_of(prepared.methods);
-    prepared.finish = [baked](Experiment& report) { finish_samples(*baked, report); };
+    prepared.finish = [bakes](Experiment& report) { finish_samples(bakes, report); };
     return prepared;
 }
 
 constexpr std::array thresholds_in_degrees = {16.0, 8.0, 4.0, 2.0, 1.0, 0.5};
 
 /// The ways are one per threshold, a quarter of the rays everywhere, and all rays everywhere.
-void finish_thresholds(BakedWays& baked, Experiment& report) {
-    const std::vector<BakeSampling>& ways = baked.ways();
+void finish_thresholds(const BumpyBakes& bakes, Experiment& report) {
+    const std::vector<BakeSampling>& ways = bakes.timed->samplings();
     const std::size_t adaptive = thresholds_in_degrees.size();
-    const auto error_of = [&](std::size_t way) -> const ErrorStats& {
-        return baked.result(way).errors.front();
-    };
     Chart rays{.id = "rays",
                .title = "Error by rays",
                .x_label = "rays per texel",
                .y_label = "RMS error, degrees",
-               .curves = {curve_of("more where they differ", baked, 0, adaptive, 0),
-                          curve_of("as many everywhere", baked, adaptive, ways.size(), 0)}};
+               .curves = {bakes.curve("more where they differ", 0, adaptive, 0),
+                          bakes.curve("as many everywhere", adaptive, ways.size(), 0)}};
     Chart thresholds{.id = "threshold",
                      .title = "Error by threshold",
                      .x_label = "limit of the angle between the first rays, degrees",
@@ -403,13 +353,11 @@ void finish_thresholds(BakedWays& baked, Experiment& report) {
                      .curves = {{.method = "more where they differ"}}};
     for (std::size_t i = adaptive; i-- > 0;)
         thresholds.curves.front().points.push_back(
-            {thresholds_in_degrees.at(i), curve_error(error_of(i))});
+            {thresholds_in_degrees.at(i), rays.curves.front().points[i].error});
     report.charts = {std::move(rays), std::move(thresholds)};
-    constexpr std::size_t shown = 2;
-    const std::array maps = {BakedMap{ways.front(), {.bits = 32}},
-                             BakedMap{ways[shown], {.bits = 32}},
+    const std::array maps = {BakedMap{ways.front(), {.bits = 32}}, BakedMap{ways[2], {.bits = 32}},
                              BakedMap{ways.back(), {.bits = 32}}};
-    add_error_maps(baked.bake(), maps, 0.5, report);
+    add_error_maps(*bakes.bake, maps, 0.5, report);
 }
 
 PreparedExperiment by_threshold(const std::shared_ptr<const BumpyBake>& bake, bool is_quick) {
@@ -419,13 +367,12 @@ PreparedExperiment by_threshold(const std::shared_ptr<const BumpyBake>& bake, bo
         ways.push_back({max_rays, degrees});
     ways.push_back({max_rays / 4});
     ways.push_back({max_rays});
-    const auto baked = std::make_shared<BakedWays>(bake, std::move(ways),
-                                                   std::vector<NormalMapFormat>{{.bits = 32}});
-    PreparedExperiment prepared = on_ways(baked);
+    const BumpyBakes bakes(bake, ways, {{.bits = 32}});
+    PreparedExperiment prepared = on_bakes(bakes);
     prepared.report.question = "Does it pay to cast more rays only where the first rays differ?";
     prepared.compared = {prepared.methods[2].name, prepared.methods[6].name,
                          prepared.methods[7].name};
-    prepared.finish = [baked](Experiment& report) { finish_thresholds(*baked, report); };
+    prepared.finish = [bakes](Experiment& report) { finish_thresholds(bakes, report); };
     return prepared;
 }
 

@@ -5,12 +5,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <string_view>
 
 #include "experiment_driver.h"
 #include "relief/accuracy/asset.h"
@@ -20,28 +18,23 @@
 
 namespace relief::accuracy::detail {
 
-std::span<const NamedKernel> named_kernels() {
-    static const std::array kernels = {NamedKernel{"forward", Kernel::forward, 2},
-                                       NamedKernel{"central3", Kernel::central3, 2},
-                                       NamedKernel{"prewitt3", Kernel::prewitt3, 2},
-                                       NamedKernel{"sobel3", Kernel::sobel3, 2},
-                                       NamedKernel{"scharr3", Kernel::scharr3, 2},
-                                       NamedKernel{"sobel5", Kernel::sobel5, 2},
-                                       NamedKernel{"scharr5", Kernel::scharr5, 2},
-                                       NamedKernel{"central5", Kernel::central5, 2},
-                                       NamedKernel{"central7", Kernel::central7, 2},
-                                       NamedKernel{"gaussian 2", Kernel::gaussian, 2},
-                                       NamedKernel{"gaussian 4", Kernel::gaussian, 4},
-                                       NamedKernel{"gaussian 8", Kernel::gaussian, 8},
-                                       NamedKernel{"gaussian 16", Kernel::gaussian, 16}};
+std::span<const BumpMethod> kernel_methods() {
+    static const std::vector<BumpMethod> kernels = [] {
+        std::vector<BumpMethod> all;
+        for (const EnumName<Kernel>& one : enum_names<Kernel>) {
+            for (const int radius : {2, 4, 8, 16}) {
+                if (one.value == Kernel::gaussian || radius == 2)
+                    all.push_back({one.value, radius, Arithmetic::float64});
+            }
+        }
+        return all;
+    }();
     return kernels;
 }
 
 std::string name_of(Kernel kernel, int gaussian_radius) {
-    for (const NamedKernel& named : named_kernels()) {
-        if (named.kernel == kernel && kernel != Kernel::gaussian) return named.name;
-    }
-    return fmt::format("gaussian {}", gaussian_radius);
+    return kernel == Kernel::gaussian ? fmt::format("gaussian {}", gaussian_radius)
+                                      : enum_name(kernel);
 }
 
 BumpOptions options_of(const BumpMethod& method, BumpOptions options) {
@@ -83,11 +76,11 @@ const FieldRecipe& field_recipe(const std::string& name) {
     throw InvalidInput("there is no field " + name);
 }
 
-WaveMap oblique_wave(int side, double wavelength, int bits) {
+BumpField oblique_wave(int side, double wavelength, int bits) {
     const double steepness = 2.0 * std::numbers::pi / wavelength;
     const HeightWave wave{1.0 / steepness, steepness * glm::dvec2(2.0, 1.0) / std::sqrt(5.0), 0.7};
     AnalyticHeights field = wave_heights(side, side, std::span(&wave, 1));
-    WaveMap map;
+    BumpField map;
     map.options.wrap = Wrap::clamp;
     map.options.strength = 1.0;
     map.normals = std::move(field.normals);
@@ -101,14 +94,12 @@ WaveMap oblique_wave(int side, double wavelength, int bits) {
     return map;
 }
 
-ErrorStats wave_errors(const WaveMap& wave, const NamedKernel& kernel, Arithmetic arithmetic) {
+ErrorStats wave_errors(const BumpField& wave, const BumpMethod& method) {
     const int margin = wave.options.wrap == Wraps(Wrap::repeat) ? 0 : wave_margin;
-    return map_errors(
-        normals_by({kernel.kernel, kernel.radius, arithmetic}, wave.heights, wave.options),
-        wave.normals, margin);
+    return map_errors(normals_by(method, wave.heights, wave.options), wave.normals, margin);
 }
 
-WaveMap surface_at(int side) {
+BumpField surface_at(int side) {
     constexpr int coarsest = 64;
     constexpr std::uint32_t seed = 5;
     const double scale = static_cast<double>(side) / coarsest;
@@ -118,36 +109,48 @@ WaveMap surface_at(int side) {
         wave.amplitude *= scale;
     }
     AnalyticHeights field = wave_heights(side, side, waves);
-    WaveMap map;
+    BumpField map;
     map.heights = std::move(field.heights);
     map.options.strength = 1.0;
     map.normals = std::move(field.normals);
     return map;
 }
 
-Method described(const BumpMethod& method) {
+namespace {
+
+/// A method named "scharr3, float32", with these choices.
+Method by_kernel(const BumpMethod& method) {
     const std::string kernel = name_of(method.kernel, method.gaussian_radius);
+    const char* const arithmetic = enum_name(method.arithmetic);
+    return {.name = fmt::format("{}, {}", kernel, arithmetic),
+            .choices = {{"kernel", kernel}, {"arithmetic", arithmetic}}};
+}
+
+}  // namespace
+
+Method described(const BumpMethod& method) {
+    Method result = by_kernel(method);
     const std::string bits = fmt::format("{} bit", method.bits);
-    return {.name = fmt::format("{}, {}, {}{}", kernel, enum_name(method.arithmetic), bits,
-                                method.destaircased ? ", steps smoothed" : ""),
-            .choices = {{"kernel", kernel},
-                        {"arithmetic", enum_name(method.arithmetic)},
-                        {"depth", bits},
-                        {"steps", method.destaircased ? "smoothed" : "as they are"}},
-            .stored_bytes = 3.0 * method.bits / 8.0};
+    result.name += ", " + bits + (method.destaircased ? ", steps smoothed" : "");
+    result.choices.emplace_back("depth", bits);
+    result.choices.emplace_back("steps", method.destaircased ? "smoothed" : "as they are");
+    result.stored_bytes = 3.0 * method.bits / 8.0;
+    return result;
 }
 
 namespace {
 
 /// A chart with a curve per kernel.
 Chart kernel_chart(Chart chart, const std::vector<double>& all_x,
-                   const std::function<WaveMap(double x)>& wave_at) {
+                   const std::function<BumpField(double x)>& wave_at) {
     chart.y_label = "RMS error, degrees";
-    return chart_over(
-        std::move(chart), names_of(named_kernels()), all_x, wave_at,
-        [](std::size_t i, const WaveMap& wave) {
-            return curve_error(wave_errors(wave, named_kernels()[i], Arithmetic::float64));
-        });
+    std::vector<std::string> names;
+    for (const BumpMethod& method : kernel_methods())
+        names.push_back(name_of(method.kernel, method.gaussian_radius));
+    return chart_over(std::move(chart), names, all_x, wave_at,
+                      [](std::size_t i, const BumpField& wave) {
+                          return curve_error(wave_errors(wave, kernel_methods()[i]));
+                      });
 }
 
 /// Adds the orders of the kernels. Only points at which the order dominates are fitted: the wave is
@@ -155,8 +158,8 @@ Chart kernel_chart(Chart chart, const std::vector<double>& all_x,
 /// \param x_per_texel  x, divided by the length of the shortest wave in texels
 void add_orders(Chart& chart, double x_per_texel) {
     for (std::size_t k = 0; k < chart.curves.size(); ++k) {
-        const NamedKernel& named = named_kernels()[k];
-        const GradientKernel kernel = gradient_kernel(named.kernel, named.radius);
+        const BumpMethod& method = kernel_methods()[k];
+        const GradientKernel kernel = gradient_kernel(method.kernel, method.gaussian_radius);
         std::vector<CurvePoint> ruled;
         for (const CurvePoint& point : chart.curves[k].points) {
             if (point.x >= 4.0 * x_per_texel * kernel.radius && point.error > 1e-4)
@@ -198,13 +201,14 @@ Experiment square_map(int side) {
 }
 
 /// Every kernel in both arithmetics; then again after the steps are smoothed, or not.
-std::vector<BumpMethod> kernel_methods(int bits, bool has_smoothed) {
+std::vector<BumpMethod> in_both_arithmetics(int bits, bool has_smoothed) {
     std::vector<BumpMethod> methods;
     for (const bool smoothed : {false, true}) {
         if (smoothed && !has_smoothed) continue;
-        for (const NamedKernel& kernel : named_kernels()) {
+        for (const BumpMethod& kernel : kernel_methods()) {
             for (const Arithmetic arithmetic : both_arithmetics)
-                methods.push_back({kernel.kernel, kernel.radius, arithmetic, bits, smoothed});
+                methods.push_back(
+                    {kernel.kernel, kernel.gaussian_radius, arithmetic, bits, smoothed});
         }
     }
     return methods;
@@ -213,7 +217,7 @@ std::vector<BumpMethod> kernel_methods(int bits, bool has_smoothed) {
 PreparedExperiment on_wave(int bits, bool is_quick) {
     constexpr int side = 256 + 2 * wave_margin;
     constexpr double wavelength = 32.0;
-    const auto wave = std::make_shared<const WaveMap>(oblique_wave(side, wavelength, bits));
+    const auto wave = std::make_shared<const BumpField>(oblique_wave(side, wavelength, bits));
     PreparedExperiment prepared;
     prepared.report = square_map(side);
     prepared.report.question =
@@ -226,18 +230,10 @@ PreparedExperiment on_wave(int bits, bool is_quick) {
         fmt::format("{} x {} texels of a wave {} texels long, slope 1, heights in {}", side, side,
                     wavelength, depth_name(bits));
     prepared.costs.memory = false;
-    for (const BumpMethod& method : kernel_methods(32, false)) {
-        const std::string kernel = name_of(method.kernel, method.gaussian_radius);
-        const char* const arithmetic = enum_name(method.arithmetic);
-        prepared.methods.push_back(
-            {.name = fmt::format("{}, {}", kernel, arithmetic),
-             .choices = {{"kernel", kernel}, {"arithmetic", arithmetic}},
-             .error =
-                 [wave, method] {
-                     return wave_errors(*wave, {{}, method.kernel, method.gaussian_radius},
-                                        method.arithmetic);
-                 },
-             .work = [wave, method] { normals_by(method, wave->heights, wave->options); }});
+    for (const BumpMethod& method : in_both_arithmetics(32, false)) {
+        Method& one = prepared.methods.emplace_back(by_kernel(method));
+        one.error = [wave, method] { return wave_errors(*wave, method); };
+        one.work = [wave, method] { normals_by(method, wave->heights, wave->options); };
     }
     prepared.finish = [bits, is_quick](Experiment& report) {
         report.charts = {wavelength_chart(bits, side, is_quick)};
@@ -264,21 +260,15 @@ PreparedExperiment on_recipe(const FieldRecipe& recipe, int side) {
         "Tests verify them by numerical differentiation.";
     prepared.report.input = fmt::format("{} x {} texels, {}; the normal map in {}", side, side,
                                         recipe.name, depth_name(bits));
-    for (const BumpMethod& method : kernel_methods(bits, field->heights.bits() == 8)) {
-        const std::string kernel = name_of(method.kernel, method.gaussian_radius);
-        const char* const arithmetic = enum_name(method.arithmetic);
-        prepared.methods.push_back(
-            {.name = fmt::format("{}, {}{}", kernel, arithmetic,
-                                 method.destaircased ? ", steps smoothed away" : ""),
-             .choices = {{"kernel", kernel},
-                         {"arithmetic", arithmetic},
-                         {"steps", method.destaircased ? "smoothed away" : "as they are"}},
-             .error = [field, method] { return conversion_error(*field, method); },
-             .work =
-                 [field, method] {
-                     Image map;
-                     convert_by(method, field->heights, field->options, map);
-                 }});
+    for (const BumpMethod& method : in_both_arithmetics(bits, field->heights.bits() == 8)) {
+        Method& one = prepared.methods.emplace_back(by_kernel(method));
+        if (method.destaircased) one.name += ", steps smoothed away";
+        one.choices.emplace_back("steps", method.destaircased ? "smoothed away" : "as they are");
+        one.error = [field, method] { return conversion_error(*field, method); };
+        one.work = [field, method] {
+            Image map;
+            convert_by(method, field->heights, field->options, map);
+        };
     }
     prepared.finish = [field](Experiment& report) {
         const KernelChoice choice = choose_kernel(field->heights, field->options);
@@ -291,15 +281,14 @@ PreparedExperiment on_recipe(const FieldRecipe& recipe, int side) {
 /// Heat maps of a short and a wide kernel, whose errors are at short and at long waves.
 void add_heat_maps(const FieldRecipe& recipe, int side, Experiment& experiment) {
     const BumpField field = make_bump_field(recipe, side, side);
-    for (const NamedKernel& kernel : {NamedKernel{"central3", Kernel::central3},
-                                      NamedKernel{"gaussian 4", Kernel::gaussian, 4}}) {
-        const Image normals = normals_by({kernel.kernel, kernel.radius, Arithmetic::float64},
-                                         field.heights, field.options);
+    for (const BumpMethod& method : {BumpMethod{Kernel::central3, 2, Arithmetic::float64},
+                                     BumpMethod{Kernel::gaussian, 4, Arithmetic::float64}}) {
+        const Image normals = normals_by(method, field.heights, field.options);
         experiment.heat_maps.push_back(
             {fmt::format("Error of {} on waves that are long at the sides and short in the "
                          "middle",
-                         kernel.name),
-             fmt::format("{}, float64", kernel.name), angles_of(normals, field.normals), 10.0});
+                         name_of(method.kernel, method.gaussian_radius)),
+             by_kernel(method).name, angles_of(normals, field.normals), 10.0});
     }
 }
 

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Decimates analytic surfaces to the same number of triangles by different options, and measures
 // the results at samples that are spread over the area against the surface in closed form.
-#include "decimation_experiments.h"
+#include "experiment_parts.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
 #include <string>
 #include <utility>
 
-#include "experiment_parts.h"
 #include "relief/mesh/topology.h"
 
 namespace relief::accuracy::detail {
@@ -74,62 +72,11 @@ namespace {
 constexpr std::uint32_t surface_seed = 1;
 constexpr std::size_t usual_part = 16;  ///< Results have one of so many triangles.
 
-/// A way to decimate.
-struct DecimationMethod {
-    std::string name;
-    std::string options;  ///< Of relief-mesh decimate.
-    bool has_attributes = true;
-    double normal_weight = 0.0;
-    double max_normal_degrees = 0.0;  ///< 0: no limit.
-    bool keeps_seams = false;
-    bool halves = false;  ///< By steps of a half, like levels of detail.
-    bool keeps_positions = false;
-};
-
-std::vector<DecimationMethod> decimation_methods() {
-    return {{.name = "positions", .options = "without attributes", .has_attributes = false},
-            {.name = "default", .options = "none"},
-            {.name = "normals 0.03", .options = "--weights normals=0.03", .normal_weight = 0.03},
-            {.name = "normals 0.1", .options = "--weights normals=0.1", .normal_weight = 0.1},
-            {.name = "normals 0.3", .options = "--weights normals=0.3", .normal_weight = 0.3},
-            {.name = "within 30 degrees",
-             .options = "--max-normal-error 30",
-             .max_normal_degrees = 30.0},
-            {.name = "keep seams", .options = "--keep-seams", .keeps_seams = true},
-            {.name = "keep positions", .options = "--keep-positions", .keeps_positions = true},
-            {.name = "by halves", .options = "relief-mesh lods", .halves = true}};
-}
-
-/// Decimates a mesh to a part of its triangles: one of `part`.
-Mesh decimated_by(const DecimationMethod& method, const Mesh& mesh, std::size_t part) {
-    DecimateOptions options;
-    options.goal = DecimateGoal::distance;
-    options.weights.normal = method.normal_weight;
-    options.keep_seams = method.keeps_seams;
-    options.fit_positions = !method.keeps_positions;
-    if (method.max_normal_degrees > 0.0)
-        options.max_normal_error = method.max_normal_degrees * std::numbers::pi / 180.0;
-    const auto to = [&](const Mesh& finer, std::size_t divisor) {
-        options.triangles = mesh.triangles.size() / divisor;
-        return decimated(finer, options).mesh;
-    };
-    if (!method.has_attributes) {
-        Mesh bare;
-        bare.positions = mesh.positions;
-        bare.triangles = mesh.triangles;
-        return to(bare, part);
-    }
-    if (!method.halves) return to(mesh, part);
-    Mesh level = to(mesh, 2);
-    for (std::size_t divisor = 4; divisor <= part; divisor *= 2)
-        level = to(level, divisor);
-    return level;
-}
-
-/// An analytic surface as a mesh, which the methods of an experiment share.
+/// An analytic surface as a mesh, and the part of its triangles that a result has: one of `part`.
 struct DecimationInput {
     AnalyticSurface surface = AnalyticSurface::torus;
     Mesh mesh;
+    std::size_t part = usual_part;
 
     DecimationInput(AnalyticSurface one, int cells)
         : surface(one),
@@ -138,13 +85,64 @@ struct DecimationInput {
                    .mesh) {}
 };
 
+/// A way to decimate. Its choice is the option of relief-mesh decimate.
+using DecimationMethod = MethodOn<DecimationInput, Mesh>;
+
+Mesh reduced(const Mesh& mesh, DecimateOptions options, std::size_t triangles) {
+    options.goal = DecimateGoal::distance;
+    options.triangles = triangles;
+    return decimated(mesh, options).mesh;
+}
+
+std::vector<DecimationMethod> decimation_methods() {
+    std::vector<DecimationMethod> methods;
+    DecimateOptions usual;
+    usual.weights.normal = 0.0;
+    usual.fit_positions = true;
+    const auto add = [&](const std::string& name, const std::string& option, const auto& change) {
+        DecimateOptions options = usual;
+        change(options);
+        methods.push_back({name, {{"options", option}}, [options](const DecimationInput& input) {
+                               return reduced(input.mesh, options,
+                                              input.mesh.triangles.size() / input.part);
+                           }});
+    };
+    methods.push_back(
+        {"positions", {{"options", "without attributes"}}, [usual](const DecimationInput& input) {
+             Mesh bare;
+             bare.positions = input.mesh.positions;
+             bare.triangles = input.mesh.triangles;
+             return reduced(bare, usual, bare.triangles.size() / input.part);
+         }});
+    add("default", "none", [](DecimateOptions&) {});
+    for (const double weight : {0.03, 0.1, 0.3}) {
+        add(fmt::format("normals {}", weight), fmt::format("--weights normals={}", weight),
+            [&](DecimateOptions& options) { options.weights.normal = weight; });
+    }
+    add("within 30 degrees", "--max-normal-error 30", [](DecimateOptions& options) {
+        options.max_normal_error = 30.0 * std::numbers::pi / 180.0;
+    });
+    add("keep seams", "--keep-seams", [](DecimateOptions& options) { options.keep_seams = true; });
+    add("keep positions", "--keep-positions",
+        [](DecimateOptions& options) { options.fit_positions = false; });
+    methods.push_back(
+        {"by halves", {{"options", "relief-mesh lods"}}, [usual](const DecimationInput& input) {
+             const std::size_t triangles = input.mesh.triangles.size();
+             Mesh level = reduced(input.mesh, usual, triangles / 2);
+             for (std::size_t divisor = 4; divisor <= input.part; divisor *= 2)
+                 level = reduced(level, usual, triangles / divisor);
+             return level;
+         }});
+    return methods;
+}
+
 std::string unit_of(DecimationError kind) {
     return kind == DecimationError::angle ? "degrees" : "lengths";
 }
 
 /// The error over the number of triangles. In theory, the distance is inverse to that number, and
 /// the angle to its root.
-Chart triangles_chart(const DecimationInput& input, DecimationError kind, bool is_quick) {
+Chart triangles_chart(DecimationInput input, DecimationError kind, bool is_quick) {
     Chart chart{.id = "triangles",
                 .title = "Fewer triangles",
                 .x_label = "triangles of the result",
@@ -152,11 +150,13 @@ Chart triangles_chart(const DecimationInput& input, DecimationError kind, bool i
     const std::vector<std::size_t> parts = is_quick ? std::vector<std::size_t>{64, 16, 4}
                                                     : std::vector<std::size_t>{64, 32, 16, 8, 4, 2};
     for (const DecimationMethod& method : decimation_methods()) {
-        if (method.max_normal_degrees > 0.0 || method.keeps_seams) continue;
-        if (is_quick && method.normal_weight > 0.0) continue;
-        Curve& curve = chart.curves.emplace_back(Curve{.method = method.name});
+        const std::string& name = method.name;
+        if (name == "within 30 degrees" || name == "keep seams") continue;
+        if (is_quick && name.starts_with("normals")) continue;
+        Curve& curve = chart.curves.emplace_back(Curve{.method = name});
         for (const std::size_t part : parts) {
-            const Mesh result = decimated_by(method, input.mesh, part);
+            input.part = part;
+            const Mesh result = method.compute(input);
             curve.points.push_back(
                 {static_cast<double>(result.triangles.size()),
                  curve_error(surface_errors(result, input.surface, surface_seed, kind))});
@@ -184,20 +184,12 @@ PreparedExperiment decimation_of(AnalyticSurface surface, int cells, DecimationE
         .error_unit = unit_of(kind),
         .item = "triangle",
         .items = static_cast<double>(triangles)};
-    const std::vector<DecimationMethod> methods = decimation_methods();
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-        prepared.methods.push_back(
-            {.name = methods[i].name,
-             .choices = {{"options", methods[i].options}},
-             .error =
-                 [input, kind, method = methods[i]] {
-                     const Mesh result = decimated_by(method, input->mesh, usual_part);
-                     return MethodError(surface_errors(result, input->surface, surface_seed, kind),
-                                        fmt::format("{} triangles", result.triangles.size()));
-                 },
-             .work = [input,
-                      method = methods[i]] { decimated_by(method, input->mesh, usual_part); }});
-    }
+    prepared.methods =
+        methods_on(input, decimation_methods(), [input, kind](const DecimationMethod& method) {
+            const Mesh result = method.compute(*input);
+            return MethodError(surface_errors(result, input->surface, surface_seed, kind),
+                               fmt::format("{} triangles", result.triangles.size()));
+        });
     prepared.costs.memory = false;
     return prepared;
 }

@@ -137,6 +137,10 @@ double FigureChange::growth() const {
     return after / before - 1.0;
 }
 
+std::string MethodChange::name() const {
+    return fmt::format("{}{}: {}", experiment, chart.empty() ? "" : ", chart " + chart, method);
+}
+
 const FigureChange& MethodChange::worst() const {
     return *std::max_element(
         figures.begin(), figures.end(),
@@ -166,60 +170,52 @@ const Element* find_by(std::string Element::*name, const std::string& value,
     return found == all.end() ? nullptr : &*found;
 }
 
-struct Figure {
-    std::string name;
-    double value = 0.0;
-};
-
-/// The errors of a method, or of a curve.
-struct Figures {
-    std::string chart;  ///< Empty for a method.
-    std::string method;
-    std::string name;  ///< "EXPERIMENT: METHOD", "EXPERIMENT, chart ID: METHOD"
-    std::vector<Figure> values;
-};
-
-std::vector<Figures> figures_of(const Experiment& experiment) {
-    std::vector<Figures> all;
+/// The errors of all methods and curves, as figures that did not change.
+std::vector<MethodChange> figures_of(const Experiment& experiment) {
+    std::vector<MethodChange> all;
     for (const Measurement& one : experiment.measurements) {
         const ErrorStats& error = one.error;
-        all.push_back({"",
-                       one.method,
-                       experiment.id + ": " + one.method,
-                       {{"rms", error.rms},
-                        {"mean", error.mean},
-                        {"p99", error.p99},
-                        {"max", error.max},
-                        {"undefined", static_cast<double>(error.undefined)}}});
+        MethodChange& figures = all.emplace_back(MethodChange{experiment.id, "", one.method, {}});
+        for (const auto& [name, value] :
+             {std::pair("rms", error.rms), std::pair("mean", error.mean),
+              std::pair("p99", error.p99), std::pair("max", error.max),
+              std::pair("undefined", static_cast<double>(error.undefined))})
+            figures.figures.push_back({name, value, value});
     }
     for (const Chart& chart : experiment.charts) {
         for (const Curve& curve : chart.curves) {
-            Figures& figures = all.emplace_back(
-                Figures{chart.id,
-                        curve.method,
-                        fmt::format("{}, chart {}: {}", experiment.id, chart.id, curve.method),
-                        {}});
+            MethodChange& figures =
+                all.emplace_back(MethodChange{experiment.id, chart.id, curve.method, {}});
             for (const CurvePoint& point : curve.points)
-                figures.values.push_back({fmt::format("at {:.4g}", point.x), point.error});
+                figures.figures.push_back(
+                    {fmt::format("at {:.4g}", point.x), point.error, point.error});
         }
     }
     return all;
+}
+
+/// The same method or curve, or nullptr.
+const MethodChange* same_in(const std::vector<MethodChange>& all, const MethodChange& one) {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const MethodChange& other) {
+        return other.chart == one.chart && other.method == one.method;
+    });
+    return found == all.end() ? nullptr : &*found;
 }
 
 /// Adds the methods, curves and points of an experiment that the other run does not have. Without
 /// the experiment these are all methods.
 void add_missing(std::vector<std::string>& names, const Experiment& experiment,
                  const Experiment* other) {
-    const std::vector<Figures> others =
-        other == nullptr ? std::vector<Figures>() : figures_of(*other);
-    for (const Figures& figures : figures_of(experiment)) {
-        const Figures* same = find_by(&Figures::name, figures.name, others);
+    const std::vector<MethodChange> others =
+        other == nullptr ? std::vector<MethodChange>() : figures_of(*other);
+    for (const MethodChange& figures : figures_of(experiment)) {
+        const MethodChange* same = same_in(others, figures);
         if (same == nullptr && (other != nullptr || figures.chart.empty()))
-            names.push_back(figures.name);
+            names.push_back(figures.name());
         if (same == nullptr) continue;
-        for (const Figure& figure : figures.values) {
-            if (find_by(&Figure::name, figure.name, same->values) == nullptr)
-                names.push_back(figures.name + " " + figure.name);
+        for (const FigureChange& one : figures.figures) {
+            if (find_by(&FigureChange::figure, one.figure, same->figures) == nullptr)
+                names.push_back(figures.name() + " " + one.figure);
         }
     }
 }
@@ -227,16 +223,16 @@ void add_missing(std::vector<std::string>& names, const Experiment& experiment,
 /// Adds the methods and curves of both runs that differ, with the figures that differ.
 void add_changes(std::vector<MethodChange>& changes, const Experiment& before,
                  const Experiment& after) {
-    const std::vector<Figures> others = figures_of(after);
-    for (const Figures& figures : figures_of(before)) {
-        MethodChange change{before.id, figures.chart, figures.method, {}};
-        const Figures* same = find_by(&Figures::name, figures.name, others);
+    const std::vector<MethodChange> others = figures_of(after);
+    for (MethodChange& change : figures_of(before)) {
+        const MethodChange* same = same_in(others, change);
         if (same == nullptr) continue;
-        for (const Figure& figure : figures.values) {
-            const Figure* is = find_by(&Figure::name, figure.name, same->values);
-            if (is != nullptr && differs(figure.value, is->value))
-                change.figures.push_back({figure.name, figure.value, is->value});
+        for (FigureChange& one : change.figures) {
+            const FigureChange* is = find_by(&FigureChange::figure, one.figure, same->figures);
+            if (is != nullptr) one.after = is->after;
         }
+        std::erase_if(change.figures,
+                      [](const FigureChange& one) { return !differs(one.before, one.after); });
         if (!change.figures.empty()) changes.push_back(std::move(change));
     }
 }

@@ -22,7 +22,6 @@
 #include "relief/mesh/report.h"
 #include "relief/mesh/statistics.h"
 #include "rendered_methods.h"
-#include "single_processor.h"
 
 namespace relief::accuracy {
 using namespace relief::accuracy::detail;
@@ -30,14 +29,8 @@ using namespace relief::detail;
 
 namespace {
 
-/// Leaves out methods, and computes the errors of the others.
-/// \return whether all methods are left
-bool begin(PreparedExperiment& prepared, const RunOptions& options) {
-    const std::size_t all = prepared.methods.size();
-    if (options.selects_method) {
-        std::erase_if(prepared.methods,
-                      [&](const Method& method) { return !options.selects_method(method.name); });
-    }
+/// Computes the errors of all methods.
+void begin(PreparedExperiment& prepared) {
     for (const Method& method : prepared.methods) {
         check_cancelled();
         const MethodError error = method.error();
@@ -47,7 +40,6 @@ bool begin(PreparedExperiment& prepared, const RunOptions& options) {
                                                 .cost = {.stored_bytes = method.stored_bytes},
                                                 .note = method.note + error.note});
     }
-    return prepared.methods.size() == all;
 }
 
 /// Adds interleaved rounds of all methods that have a time.
@@ -102,7 +94,7 @@ void add_times(PreparedExperiment& prepared, const Repeats& repeats, unsigned th
 }
 
 /// Measures the memory, marks the Pareto-optimal methods, and finishes the report.
-Experiment end(PreparedExperiment& prepared, bool is_whole, const RunOptions& options) {
+Experiment end(PreparedExperiment& prepared, const RunOptions& options) {
     Experiment& report = prepared.report;
     const ExecutionScope all_threads({.threads = options.threads});
     for (std::size_t i = 0; i < prepared.methods.size(); ++i) {
@@ -111,9 +103,8 @@ Experiment end(PreparedExperiment& prepared, bool is_whole, const RunOptions& op
             report.measurements[i].cost.peak_bytes = peak_bytes_of(work);
     }
     mark_pareto_optimal(report);
-    if (is_whole && !prepared.methods.empty())
-        report.finding = finding_of(report, prepared.compared);
-    if (is_whole && prepared.finish) prepared.finish(report);
+    if (!prepared.methods.empty()) report.finding = finding_of(report, prepared.compared);
+    if (prepared.finish) prepared.finish(report);
     return std::move(report);
 }
 
@@ -136,7 +127,6 @@ std::vector<Experiment> detail::run_planned(std::vector<PlannedExperiment> plan,
     const std::size_t most = options.is_timed ? std::max<std::size_t>(options.passes, 1) : 1;
     const std::size_t passes = std::clamp<std::size_t>(options.repeats.counted, 1, most);
     std::vector<PreparedExperiment> prepared(plan.size());
-    std::vector<bool> is_whole(plan.size());
     std::vector<Experiment> experiments;
     for (std::size_t pass = 0; pass < passes; ++pass) {
         for (std::size_t i = 0; i < plan.size(); ++i) {
@@ -146,13 +136,13 @@ std::vector<Experiment> detail::run_planned(std::vector<PlannedExperiment> plan,
                 prepared[i].report.id = plan[i].id;
                 prepared[i].report.subject = plan[i].subject;
                 prepared[i].report.title = plan[i].title;
-                is_whole[i] = begin(prepared[i], options);
+                begin(prepared[i]);
             }
             Repeats repeats = options.repeats;
             repeats.counted = share_of(repeats.counted, pass, passes);
             if (options.is_timed) add_times(prepared[i], repeats, options.threads);
             if (pass + 1 < passes) continue;
-            experiments.push_back(end(prepared[i], is_whole[i], options));
+            experiments.push_back(end(prepared[i], options));
             prepared[i] = {};  // Frees the input.
             if (options.finished) options.finished(experiments.back());
         }
@@ -161,9 +151,9 @@ std::vector<Experiment> detail::run_planned(std::vector<PlannedExperiment> plan,
 }
 
 Experiment detail::measured(PreparedExperiment prepared, const RunOptions& options) {
-    const bool is_whole = begin(prepared, options);
+    begin(prepared);
     if (options.is_timed) add_times(prepared, options.repeats, options.threads);
-    return end(prepared, is_whole, options);
+    return end(prepared, options);
 }
 
 namespace {

@@ -5,6 +5,8 @@
 /// Tests: tests/accuracy/experiment_driver_test.cpp.
 #pragma once
 
+#include <sched.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -44,9 +46,8 @@ struct Method {
     std::string note{};  ///< Before that of the error.
 
     // For recommendations on a user's files only:
-    std::string command{};               ///< Applies the method; empty: no tool does.
-    std::optional<Timing> known_time{};  ///< On all threads, if it was measured elsewhere.
-    double nominal_cost = 0.0;           ///< RecommendationRule::nominal_costs.
+    std::string command{};      ///< Applies the method; empty: no tool does.
+    double nominal_cost = 0.0;  ///< RecommendationRule::nominal_costs.
 };
 
 /// A method as a function of its input, for experiments that apply it to several inputs.
@@ -59,6 +60,7 @@ struct MethodOn {
     bool has_work = true;       ///< Otherwise it has no time of its own.
     double stored_bytes = 0.0;  ///< Method::stored_bytes
     std::string note{};
+    std::string command{};  ///< Of its own arguments; empty: no tool applies it.
 };
 
 /// The names of methods.
@@ -102,7 +104,7 @@ struct PreparedExperiment {
     /// The methods that the finding compares. Empty: the most and the least accurate one.
     std::vector<std::string> compared{};
     /// Adds charts and pictures to the report, and may replace its finding. Called once, after the
-    /// last pass, if no method was left out.
+    /// last pass.
     std::function<void(Experiment& report)> finish{};
 };
 
@@ -227,5 +229,23 @@ double processor_seconds_of(const std::function<void()>& work);
 /// Returns the peak memory of `work` in bytes in addition to the memory before; nothing if the
 /// system does not report it.
 std::optional<std::uint64_t> peak_bytes_of(const std::function<void()>& work);
+
+/// Keeps all threads of this process on one processor during its lifetime. A software OpenGL driver
+/// starts its threads only once, so this is the only way to time it on one thread. The destructor
+/// restores the affinity that the calling thread had.
+class SingleProcessor {
+  public:
+    SingleProcessor();
+    ~SingleProcessor();
+    SingleProcessor(const SingleProcessor&) = delete;
+    SingleProcessor& operator=(const SingleProcessor&) = delete;
+
+    /// Returns whether the system allowed it; if not, nothing has changed.
+    [[nodiscard]] bool is_active() const { return is_active_; }
+
+  private:
+    ::cpu_set_t before_;
+    bool is_active_ = false;
+};
 
 }  // namespace relief::accuracy::detail

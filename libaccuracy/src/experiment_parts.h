@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The parts of experiments on normals, tangents, bump maps, baking and stability that asset
-/// reports, other experiments and tests use as well; and the values that experiments iterate over,
-/// with their names in reports.
+/// The parts of experiments on meshes and maps that asset reports, other experiments, benchmarks
+/// and tests use as well; and the values that experiments iterate over, with their names in
+/// reports.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "experiment_driver.h"
@@ -61,19 +61,8 @@ inline float angle_of(const glm::dvec3& actual, const glm::dvec3& expected) {
 // Vertex normals: every weighting on analytic surfaces and on the fans of [Max 1999].
 
 /// Weightings by their names in relief-mesh; without a weight, it is chosen per vertex.
-struct NormalWeighting {
-    const char* name;
-    std::optional<NormalWeight> weight;
-};
-inline constexpr std::array normal_weightings = {
-    NormalWeighting{"uniform", NormalWeight::uniform},
-    NormalWeighting{"area", NormalWeight::area},
-    NormalWeighting{"angle", NormalWeight::angle},
-    NormalWeighting{"sine", NormalWeight::sine},
-    NormalWeighting{"max", NormalWeight::max},
-    NormalWeighting{"angle-edges", NormalWeight::angle_edges},
-    NormalWeighting{"area-angle", NormalWeight::area_angle},
-    NormalWeighting{"auto", std::nullopt}};
+using NormalWeighting = EnumName<std::optional<NormalWeight>>;
+std::vector<NormalWeighting> normal_weightings();
 
 /// Computes one normal per position.
 std::vector<glm::vec3> normals_by(std::optional<NormalWeight> weight, Arithmetic arithmetic,
@@ -95,16 +84,10 @@ ErrorStats fan_errors(const NormalMethod& method, int valence, std::uint32_t fan
 // Normals from height maps: every kernel in both arithmetics, on waves and fields whose normals are
 // known in closed form.
 
-struct NamedKernel {
-    std::string name;  ///< "sobel3", "gaussian 4"
-    Kernel kernel = Kernel::sobel3;
-    int radius = 2;  ///< Only for Kernel::gaussian.
-};
+/// All kernels in float64; Gaussians of radius 2, 4, 8 and 16 come last.
+std::span<const BumpMethod> kernel_methods();
 
-/// All kernels; Gaussians of radius 2, 4, 8 and 16 come last.
-std::span<const NamedKernel> named_kernels();
-
-/// The name of a kernel in named_kernels().
+/// The name of a kernel: "sobel3", "gaussian 4".
 std::string name_of(Kernel kernel, int gaussian_radius);
 
 /// The bump options of a method.
@@ -124,26 +107,20 @@ double rms_error(const BumpField& field, Kernel kernel, int gaussian_radius);
 /// A field from one of the sets of ground_truth.h. \throws InvalidInput if none has that name
 const FieldRecipe& field_recipe(const std::string& name);
 
-/// A height map of one oblique wave of slope 1, with its exact normals.
-struct WaveMap {
-    Image heights;  ///< One channel.
-    BumpOptions options;
-    std::vector<glm::dvec3> normals;
-};
-
 /// Texels along each border that are not compared, because kernels need heights beyond the border.
 inline constexpr int wave_margin = 16;
 
-/// Makes a wave that runs two texels to the right for one down, a direction that favors no kernel.
+/// Makes a wave of slope 1 that runs two texels to the right for one down, a direction that favors
+/// no kernel.
 ///
 /// \param bits  of the heights: 8, 16, or 32 for floats
-WaveMap oblique_wave(int side, double wavelength, int bits);
+BumpField oblique_wave(int side, double wavelength, int bits);
 
 /// The errors of the unrounded normals of a wave map.
-ErrorStats wave_errors(const WaveMap& wave, const NamedKernel& kernel, Arithmetic arithmetic);
+ErrorStats wave_errors(const BumpField& wave, const BumpMethod& method);
 
 /// The same surface at several resolutions: waves that tile a square of `side` texels.
-WaveMap surface_at(int side);
+BumpField surface_at(int side);
 
 /// A method named "scharr3, float32, 16 bit", with its choices and the bytes of a texel, but
 /// without functions.
@@ -151,12 +128,6 @@ Method described(const BumpMethod& method);
 
 // Baking: a sphere with bumps in closed form is baked onto a coarse sphere with several numbers of
 // rays per texel and several bit depths.
-
-/// A point of a surface with its normal.
-struct SurfacePoint {
-    glm::dvec3 position{0.0};
-    glm::dvec3 normal{0.0};  ///< Unit.
-};
 
 /// A sphere with bumps in closed form, and a mesh of it.
 class BumpySphere {
@@ -168,17 +139,54 @@ class BumpySphere {
 
     /// Intersects a ray that points roughly towards the center with the exact surface.
     /// \param inward  unit
-    [[nodiscard]] static SurfacePoint on_surface(const glm::dvec3& from, const glm::dvec3& inward);
+    [[nodiscard]] static ExactPoint on_surface(const glm::dvec3& from, const glm::dvec3& inward);
 
     /// Intersects such a ray with the mesh, in double; the normal is interpolated. Only triangles
     /// near the exact intersection are tried.
     /// \throws std::logic_error if the ray hits none of them
-    [[nodiscard]] SurfacePoint on_mesh(const glm::dvec3& from, const glm::dvec3& inward) const;
+    [[nodiscard]] ExactPoint on_mesh(const glm::dvec3& from, const glm::dvec3& inward) const;
 
   private:
     int stacks_;
     Mesh mesh_;
 };
+
+/// Bakes by several samplings, each in several formats.
+class TimedBakes {
+  public:
+    TimedBakes(std::shared_ptr<const BakeReference> reference,
+               std::span<const BakeSampling> samplings, std::vector<NormalMapFormat> formats);
+
+    [[nodiscard]] const BakeReference& reference() const { return *reference_; }
+    [[nodiscard]] const std::vector<BakeSampling>& samplings() const { return samplings_; }
+    [[nodiscard]] const std::vector<NormalMapFormat>& formats() const { return formats_; }
+
+    /// The errors of a sampling in all formats; the rays are cast once.
+    const BakeMeasurement& result(std::size_t sampling);
+
+    /// Seconds for casting rays and encoding together. One cast serves a round of all formats; the
+    /// cast of result() serves the first round on as many threads.
+    double seconds_of_round(std::size_t sampling, std::size_t format);
+
+  private:
+    struct Bake {
+        BakeMeasurement measurement;
+        std::vector<bool> is_format_used;
+        std::size_t threads = 0;
+    };
+    void cast(std::size_t sampling);
+
+    std::shared_ptr<const BakeReference> reference_;
+    std::vector<BakeSampling> samplings_;
+    std::vector<NormalMapFormat> formats_;
+    std::vector<std::optional<Bake>> bakes_;
+};
+
+/// A method for each sampling and format, in this order. Times are those of a wall clock.
+/// \param described  returns the method without its error and work
+std::vector<Method> methods_of(
+    const std::shared_ptr<TimedBakes>& bakes,
+    const std::function<Method(const BakeSampling&, const NormalMapFormat&)>& described);
 
 std::string name_of(const BakeSampling& way);  ///< "16 rays", "up to 64 rays beyond 2°"
 
@@ -195,7 +203,6 @@ class BumpyBake {
     [[nodiscard]] const BakeMapOptions& map() const { return map_; }
     [[nodiscard]] const BakeReference& reference() const { return reference_; }
     [[nodiscard]] std::string description() const;  ///< Of the meshes and the map.
-    [[nodiscard]] double texels() const;
 
     /// Bakes a map.
     [[nodiscard]] Image map_by(const BakeSampling& way, const NormalMapFormat& format) const;
@@ -276,18 +283,13 @@ inline constexpr std::array hard_triangle_names = {
 /// positions and triangles.
 Mesh with_hard_triangles(const Mesh& mesh, HardTriangle kind, std::size_t count);
 
-/// Separate needle-shaped triangles with their exact normals.
-struct Needles {
-    Mesh mesh;                        ///< Positions and triangles; no two share a vertex.
-    std::vector<glm::dvec3> normals;  ///< Per vertex; unit.
-};
-
-/// Makes needles without cancellation in their exact normals: two corners lie within twice the
-/// width of the origin, where floats are fine enough, and the third corner lies at a distance of 1.
+/// Makes separate needle-shaped triangles without cancellation in their exact normals: two corners
+/// lie within twice the width of the origin, where floats are fine enough, and the third corner
+/// lies at a distance of 1.
 ///
 /// \param width  length of the short side, which is perpendicular to the long ones. The first
 ///         corner alternates between the three.
-Needles make_needles(std::size_t count, double width, std::uint32_t seed);
+AnalyticMesh make_needles(std::size_t count, double width, std::uint32_t seed);
 
 /// Textbook code: normalizes the sum of cross products around each vertex; 0 / 0 gives NaN.
 std::vector<glm::vec3> textbook_area_normals(const Mesh& mesh);
@@ -424,5 +426,52 @@ struct TexturedCase {
 /// Every surface with regular, jittered and anisotropic cells; the jittered torus with a sheared
 /// and with a mirrored texture; and a plate with thin bevels, which has no cells.
 std::vector<TexturedCase> textured_cases();
+
+// Decimation: the error of decimated analytic surfaces.
+
+/// A point of a triangle.
+struct TriangleSample {
+    glm::dvec3 position;
+    glm::dvec3 normal;  ///< Of the triangle; not unit.
+};
+
+/// Returns points of a mesh that are spread evenly over its area, without random numbers.
+std::vector<TriangleSample> area_samples(const Mesh& mesh, std::size_t count);
+
+/// The quantity that an error of a decimation measures.
+enum class DecimationError {
+    distance,  ///< From the exact surface.
+    angle,     ///< Between a triangle and the exact surface at the nearest point, in degrees.
+};
+
+/// Returns the error of a mesh at area_samples().
+/// \param seed  of the surface
+ErrorStats surface_errors(const Mesh& mesh, AnalyticSurface surface, std::uint32_t seed,
+                          DecimationError kind);
+
+// Unwrapping: how much texture coordinates stretch the surface, and how many texels of the map stay
+// unused.
+
+/// A sphere of radius 1 with waves of two lengths, without poles: the six sides of a cube, each of
+/// `cells` x `cells` squares. Its texture coordinates are those of the sides, side by side, so that
+/// vertices on the edges of the cube exist two or three times.
+/// \param noise  standard deviation of the radius at each vertex
+Mesh wavy_sphere(int cells, double noise);
+
+/// A flat gear with sharp edges: positions and triangles.
+/// \param cells  squares along each flank, and rings of the two flat sides
+Mesh gear_wheel(int teeth, int cells);
+
+/// The stretch of texture coordinates in percent, at points that are spread evenly over the
+/// surface: how much longer or shorter a short line on the surface becomes in the map at most,
+/// compared with the mean density of texels. A triangle without area in the map is undefined.
+/// \param corner_texcoords  three for each triangle
+ErrorStats stretch_errors(const Mesh& mesh, std::span<const glm::vec2> corner_texcoords,
+                          const glm::ivec2& size);
+
+/// Compares the choices that change charts by their stretch.
+/// \param mesh  with texture coordinates, existing charts are compared as well
+/// \param description  "sphere with waves"
+PreparedExperiment unwrapping_stretch(Mesh mesh, const std::string& description, int size);
 
 }  // namespace relief::accuracy::detail

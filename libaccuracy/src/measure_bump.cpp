@@ -24,9 +24,6 @@ namespace {
 /// Only maps with fewer bits than this are de-staircased, because the steps of others are
 /// invisible.
 constexpr int fine_bits = 13;
-constexpr Kernel all_kernels[] = {
-    Kernel::forward, Kernel::central3, Kernel::prewitt3, Kernel::sobel3,   Kernel::scharr3,
-    Kernel::sobel5,  Kernel::scharr5,  Kernel::central5, Kernel::central7, Kernel::gaussian};
 
 /// The input of all conversions.
 struct Trial {
@@ -180,8 +177,8 @@ std::vector<BumpMethod> bump_methods(int gaussian_radius, std::span<const int> d
     for (const bool smooth : destaircased) {
         for (const int bits : depths) {
             for (const Arithmetic arithmetic : arithmetics) {
-                for (const Kernel kernel : all_kernels)
-                    methods.push_back({kernel, gaussian_radius, arithmetic, bits, smooth});
+                for (const EnumName<Kernel>& kernel : enum_names<Kernel>)
+                    methods.push_back({kernel.value, gaussian_radius, arithmetic, bits, smooth});
             }
         }
     }

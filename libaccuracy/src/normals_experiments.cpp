@@ -5,14 +5,20 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "experiment_driver.h"
 #include "relief/mesh/statistics.h"
 
 namespace relief::accuracy::detail {
+
+std::vector<NormalWeighting> normal_weightings() {
+    std::vector<NormalWeighting> weightings;
+    for (const EnumName<NormalWeight>& one : enum_names<NormalWeight>)
+        weightings.push_back({one.name, one.value});
+    weightings.push_back({"auto", std::nullopt});
+    return weightings;
+}
 
 std::vector<glm::vec3> normals_by(std::optional<NormalWeight> weight, Arithmetic arithmetic,
                                   const Mesh& mesh) {
@@ -26,12 +32,12 @@ std::vector<glm::vec3> normals_by(std::optional<NormalWeight> weight, Arithmetic
 
 std::vector<NormalMethod> normal_methods(std::span<const Arithmetic> arithmetics) {
     std::vector<NormalMethod> methods;
-    for (const NormalWeighting& weighting : normal_weightings) {
+    for (const NormalWeighting& weighting : normal_weightings()) {
         for (const Arithmetic arithmetic : arithmetics) {
             const char* const word = enum_name(arithmetic);
             methods.push_back({fmt::format("{}, {}", weighting.name, word),
                                {{"weighting", weighting.name}, {"arithmetic", word}},
-                               [weight = weighting.weight, arithmetic](const Mesh& mesh) {
+                               [weight = weighting.value, arithmetic](const Mesh& mesh) {
                                    return normals_by(weight, arithmetic, mesh);
                                }});
         }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Experiments on reflected environments: the size of cube maps for a mirror, and blurred mip levels
-// for rough mirrors. The environment is a formula, so the exact reflection is known.
+// Experiments on reflected environments: the size of cube maps for a mirror, blurred mip levels for
+// rough mirrors, and the light that rough surfaces lose. The environment is a formula, so the exact
+// reflection is known.
 #include "shading_experiments.h"
 
 #include <fmt/format.h>
@@ -146,53 +147,55 @@ double bytes_of(int side) {
 /// Side of the smallest cube map; each method doubles it.
 constexpr int smallest_map_side = 16;
 
-void finish_cube_map_sizes(Experiment& experiment, const Renderings& renderings) {
-    const std::vector<RenderedMethod>& methods = renderings.methods;
+Chart map_size_chart(const Experiment& experiment) {
     Curve curve{.method = "cube map"};
-    for (std::size_t i = 0; i < methods.size(); ++i)
-        curve.points.push_back(
-            {smallest_map_side * std::exp2(i), experiment.measurements[i].error.rms});
+    for (const Measurement& one : experiment.measurements)
+        curve.points.push_back({smallest_map_side * std::exp2(curve.points.size()), one.error.rms});
     curve.order = fitted_order(curve.points);
-    experiment.charts = {{.id = "size",
-                          .title = "Error by size",
-                          .x_label = "texels along a face",
-                          .y_label = "FLIP",
-                          .curves = {std::move(curve)}}};
-    for (const std::size_t i : {1U, 3U})  // 32 and 128 texels.
-        add_images("The environment in a mirror", renderings, i, 0.5, experiment);
+    return {.id = "size",
+            .title = "Error by size",
+            .x_label = "texels along a face",
+            .y_label = "FLIP",
+            .curves = {std::move(curve)}};
 }
 
 }  // namespace
 
 PreparedExperiment reflection_experiment(const PlanOptions& options) {
     const int size = options.is_quick ? 160 : 320;
-    const int rays = 4;
+    constexpr int rays = 4;
     const int largest = options.is_quick ? 256 : 1024;
-    Experiment experiment = image_experiment(size);
-    experiment.question = "How large must a cube map be for a mirror?";
-    experiment.ground_truth = fmt::format(
-        "The formula of the environment in the directions that an exact ball "
-        "reflects, mean of {} rays per pixel. A test verifies it by the reference "
-        "shader.",
-        rays * rays);
-    experiment.input = fmt::format(
-        "mirror ball, environment with details of 3 degrees, {0} x {0} "
-        "pixels, about 0.7 degrees of the environment in each",
-        size);
-    const std::shared_ptr<const GlDevice> device = options.device.get();
-    if (!device->is_available()) return not_rendered(std::move(experiment), *device);
     std::vector<RenderedMethod> methods;
     for (int side = smallest_map_side; side <= largest; side *= 2) {
-        methods.push_back({name_of(side),
-                           {{"size", fmt::format("{}", side)}},
-                           mirror_ball(cube_map_of(waves_and_lights, side), 0.0),
-                           1,
-                           1,
-                           bytes_of(side)});
+        methods.push_back({.name = name_of(side),
+                           .choices = {{"size", fmt::format("{}", side)}},
+                           .compute =
+                               [side](double) {
+                                   return Rendering{
+                                       mirror_ball(cube_map_of(waves_and_lights, side), 0.0)};
+                               },
+                           .stored_bytes = bytes_of(side)});
     }
-    return prepare_rendering(device, std::move(experiment), std::move(methods),
-                             exact_mirror(waves_and_lights, size, rays), finish_cube_map_sizes,
-                             {name_of(32), name_of(128), name_of(largest)});
+    return prepare_rendering(
+        options.device.get(),
+        {.report =
+             {.question = "How large must a cube map be for a mirror?",
+              .ground_truth = fmt::format(
+                  "The formula of the environment in the directions that an exact ball reflects, "
+                  "mean of {} rays per pixel. A test verifies it by the reference shader.",
+                  rays * rays),
+              .input = fmt::format(
+                  "mirror ball, environment with details of 3 degrees, {0} x {0} pixels, about 0.7 "
+                  "degrees of the environment in each",
+                  size)},
+         .size = size,
+         .methods = std::move(methods),
+         .ground_truth = [size] { return exact_mirror(waves_and_lights, size, rays); },
+         .compared = {name_of(32), name_of(128), name_of(largest)},
+         .shown = {1, 3},  // 32 and 128 texels.
+         .title = "The environment in a mirror",
+         .finish = [](Experiment& report,
+                      const Renderings&) { report.charts = {map_size_chart(report)}; }});
 }
 
 namespace {
@@ -204,73 +207,150 @@ constexpr int small_map_side = 128;
 constexpr int full_ball_size = 192;
 constexpr int quick_ball_size = 64;
 
-/// The environments, and the methods for one roughness.
-struct Balls {
+/// The environments of the methods.
+struct Maps {
     Environment finest = cube_map_of(waves_and_lights, large);
     Environment coarser = cube_map_of(waves_and_lights, small_map_side);
-
-    [[nodiscard]] std::vector<RenderedMethod> methods(double roughness) const {
-        return {{"not blurred", {{"levels", "none"}}, mirror_ball(finest, 0.0)},
-                {"5 levels, 128 texels", {{"levels", "5"}}, mirror_ball(coarser, roughness)},
-                {"6 levels, 256 texels", {{"levels", "6"}}, mirror_ball(finest, roughness)}};
-    }
 };
 
-/// The ground truth dominates the time: 1024 lookups per pixel and roughness. A quick run therefore
-/// uses smaller images and fewer roughnesses.
-Chart roughness_chart(const GlDevice& device, const Balls& balls, bool is_quick) {
-    const int size = is_quick ? quick_ball_size / 2 : full_ball_size;
-    std::vector<double> roughnesses = {0.1, 0.2, 0.3, 0.5, 1.0};
-    if (!is_quick) roughnesses = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0};
-    struct Input {
-        Image ground_truth;
-        std::vector<RenderedMethod> methods;
-    };
-    return chart_over(
-        {.id = "roughness",
-         .title = "Error by roughness",
-         .x_label = "roughness",
-         .y_label = "FLIP",
-         .is_x_log = false},
-        names_of(balls.methods(0.0)), roughnesses,
-        [&](double roughness) {
-            return Input{supersampled_reference(mirror_ball(balls.finest, roughness), size, 1),
-                         balls.methods(roughness)};
-        },
-        [&](std::size_t i, const Input& input) {
-            return rendered_error(device, input.methods[i], input.ground_truth);
-        });
+/// By the roughness of the ball.
+std::vector<RenderedMethod> glossy_methods(const SharedInput<Maps>& maps) {
+    return {{"not blurred",
+             {{"levels", "none"}},
+             [maps](double) { return Rendering{mirror_ball(maps.get()->finest, 0.0)}; }},
+            {"5 levels, 128 texels",
+             {{"levels", "5"}},
+             [maps](double x) { return Rendering{mirror_ball(maps.get()->coarser, x)}; }},
+            {"6 levels, 256 texels", {{"levels", "6"}}, [maps](double x) {
+                 return Rendering{mirror_ball(maps.get()->finest, x)};
+             }}};
 }
+
+Chart roughness_chart(const char* id, const char* title, const char* y_label) {
+    return {
+        .id = id, .title = title, .x_label = "roughness", .y_label = y_label, .is_x_log = false};
+}
+
+const std::vector<double> all_roughnesses = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0};
 
 }  // namespace
 
 PreparedExperiment glossy_experiment(const PlanOptions& options) {
-    const int size = options.is_quick ? quick_ball_size : full_ball_size;
+    const bool is_quick = options.is_quick;
+    const int size = is_quick ? quick_ball_size : full_ball_size;
     constexpr double shown = 0.3;
-    Experiment experiment = image_experiment(size);
-    experiment.question = "How accurate are rough mirrors with a few blurred mip levels?";
-    experiment.ground_truth =
-        "The reference shader in double, mean of 1024 facets of GGX for each pixel. Tests "
-        "verify it by constant environments, and by linear ones, whose blur has a closed "
-        "form.";
-    experiment.input = fmt::format("ball of roughness {0}, {1} x {1} pixels", shown, size);
-    const std::shared_ptr<const GlDevice> device = options.device.get();
-    if (!device->is_available()) return not_rendered(std::move(experiment), *device);
-    const auto balls = std::make_shared<const Balls>();
+    const SharedInput<Maps> maps([] { return std::make_shared<const Maps>(); });
+    const auto reference = [maps](double roughness, int pixels) {
+        return supersampled_reference(mirror_ball(maps.get()->finest, roughness), pixels, 1);
+    };
     return prepare_rendering(
-        device, std::move(experiment), balls->methods(shown),
-        supersampled_reference(mirror_ball(balls->finest, shown), size, 1),
-        [device = device.get(), balls, is_quick = options.is_quick](Experiment& report,
-                                                                    const Renderings& renderings) {
-            report.charts = {roughness_chart(*device, *balls, is_quick)};
-            const std::size_t levels_6 = renderings.methods.size() - 1;
-            for (const std::size_t i : {std::size_t{0}, levels_6})
-                report.pictures.push_back(image_pair("A rough mirror", renderings.methods[i].name,
-                                                     renderings.images[i].picture,
-                                                     renderings.ground_truth));
-            report.heat_maps.push_back({"FLIP error", renderings.methods[levels_6].name,
-                                        renderings.images[levels_6].errors, 0.2});
-        });
+        options.device.get(),
+        {.report =
+             {.question = "How accurate are rough mirrors with a few blurred mip levels?",
+              .ground_truth =
+                  "The reference shader in double, mean of 1024 facets of GGX for each pixel. "
+                  "Tests verify it by constant environments, and by linear ones, whose blur has a "
+                  "closed form.",
+              .input = fmt::format("ball of roughness {0}, {1} x {1} pixels", shown, size)},
+         .size = size,
+         .methods = glossy_methods(maps),
+         .x = shown,
+         .ground_truth = [reference, size] { return reference(shown, size); },
+         .finish =
+             [reference, is_quick](Experiment& report, const Renderings& renderings) {
+                 // The ground truth dominates the time: 1024 lookups per pixel and roughness. A
+                 // quick run therefore uses smaller images and fewer roughnesses.
+                 const int chart_size = is_quick ? quick_ball_size / 2 : full_ball_size;
+                 report.charts = {rendered_chart(
+                     *renderings.device, roughness_chart("roughness", "Error by roughness", "FLIP"),
+                     renderings.methods,
+                     is_quick ? std::vector{0.1, 0.2, 0.3, 0.5, 1.0} : all_roughnesses,
+                     [&](double roughness) { return reference(roughness, chart_size); })};
+                 const std::size_t levels_6 = renderings.methods.size() - 1;
+                 for (const std::size_t i : {std::size_t{0}, levels_6})
+                     report.pictures.push_back(
+                         image_pair("A rough mirror", renderings.methods[i].name,
+                                    renderings.images[i].picture, renderings.ground_truth));
+                 report.heat_maps.push_back({"FLIP error", renderings.methods[levels_6].name,
+                                             renderings.images[levels_6].errors, 0.2});
+             }});
+}
+
+namespace {
+
+/// The radiance of the light; also of the exact picture.
+constexpr double even_radiance = 0.5;
+
+/// A ball of white metal in even light.
+/// \param coat_roughness  of a clear coat; below 0: none
+Scene white_ball(double roughness, double coat_roughness = -1.0) {
+    const auto even = [](const glm::dvec3&) { return glm::dvec3(even_radiance); };
+    Scene scene = mirror_ball(cube_map_of(even, 16), 0.0);
+    MetallicRoughness metal{glm::vec3(1.0F), 1.0F, static_cast<float>(roughness), {}};
+    if (coat_roughness >= 0.0) {
+        metal.clearcoat = 1.0F;
+        metal.clearcoat_roughness = static_cast<float>(coat_roughness);
+    }
+    scene.materials.front() = {};
+    scene.materials.front().metallic_roughness = metal;
+    return scene;
+}
+
+Image even_picture(int size) {
+    Image picture = make_image(size, size, 3, 32, ColorSpace::linear);
+    std::ranges::fill(picture.as<float>(), static_cast<float>(even_radiance));
+    return picture;
+}
+
+/// With and without the effect "energy compensation".
+std::vector<RenderedMethod> energy_methods(const std::function<Scene(double)>& ball) {
+    return {{"one bounce",
+             {{"bounces", "1"}},
+             [ball](double roughness) {
+                 return Rendering{.scene = ball(roughness),
+                                  .effects = {{"energy compensation", false}}};
+             }},
+            {"all bounces", {{"bounces", "all"}}, [ball](double roughness) {
+                 return Rendering{ball(roughness)};
+             }}};
+}
+
+}  // namespace
+
+PreparedExperiment energy_experiment(const PlanOptions& options) {
+    const int size = options.is_quick ? 160 : 320;
+    const auto of_metal = [](double roughness) { return white_ball(roughness); };
+    const auto of_coat = [](double roughness) { return white_ball(0.0, roughness); };
+    const auto chart = [=, chart_size = options.is_quick ? 64 : 160](
+                           const GlDevice& device, const char* id, const char* title,
+                           const std::function<Scene(double)>& ball) {
+        return rendered_chart(
+            device, roughness_chart(id, title, "lost light in percent"), energy_methods(ball),
+            all_roughnesses, [=](double) { return even_picture(chart_size); },
+            PictureMetric::percent);
+    };
+    return prepare_rendering(
+        options.device.get(),
+        {.report =
+             {.question = "How much light do rough surfaces lose, and what does it cost to keep "
+                          "it?",
+              .ground_truth = "In even light, a white surface is exactly as bright as the light, "
+                              "from every direction.",
+              .input = fmt::format("ball of white metal of roughness 1 in even light, {0} x {0} "
+                                   "pixels; errors are the lost share of the light",
+                                   size)},
+         .size = size,
+         .methods = energy_methods(of_metal),
+         .x = 1.0,
+         .ground_truth = [size] { return even_picture(size); },
+         .metric = PictureMetric::percent,
+         .finish =
+             [=](Experiment& report, const Renderings& renderings) {
+                 report.charts = {
+                     chart(*renderings.device, "roughness", "Lost light by roughness", of_metal),
+                     chart(*renderings.device, "coat", "Lost light by roughness of a clear coat",
+                           of_coat)};
+             }});
 }
 
 }  // namespace relief::accuracy::detail

@@ -20,50 +20,6 @@
 namespace relief::accuracy::detail {
 using namespace relief::shade;
 
-namespace {
-
-FrameSettings settings_of(const RenderedMethod& method, const Image& ground_truth) {
-    return {ground_truth.width * method.pixels_per_side,
-            ground_truth.height * method.pixels_per_side, method.samples, OutputCoding::srgb};
-}
-
-Image drawn(Renderer& renderer, const RenderedMethod& method) {
-    const Image picture = without_alpha(renderer.draw(*method.scene.camera).image);
-    if (method.pixels_per_side == 1) return picture;
-    return to_srgb(averaged(to_linear(picture), method.pixels_per_side), 8);
-}
-
-/// A single frame takes less than a time slice of the scheduler (see repeats_per_round()).
-constexpr std::size_t frames_per_round = 4;
-
-std::string note_of(const RenderedMethod& method, const GlDevice& device) {
-    const std::string where = rendering_note(device);
-    return method.note.empty() ? where : method.note + " " + where;
-}
-
-}  // namespace
-
-double seconds_of_frames(Renderer& renderer, const Camera& camera) {
-    Renderer* const only = &renderer;
-    const FrameSeries series = time_frames({&only, 1}, camera, {frames_per_round, 0}).front();
-    const double milliseconds = std::accumulate(series.draw.begin(), series.draw.end(), 0.0);
-    return 1e-3 * milliseconds / static_cast<double>(frames_per_round);
-}
-
-std::string rendering_note(const GlDevice& device) {
-    return fmt::format(
-        "Rendered by {}; the time excludes reading the image back.{}",
-        device.context().renderer_name(),
-        device.context().is_software()
-            ? " The time on one thread is that of all threads of the driver on one processor."
-            : "");
-}
-
-void set_frame_costs(PreparedExperiment& prepared, const GlDevice& device) {
-    prepared.costs.one_thread = device.context().is_software();
-    prepared.limits_processors = true;
-}
-
 GlDevice::GlDevice(Backend backend) {
     try {
         context_ = std::make_unique<Context>(backend);
@@ -74,101 +30,152 @@ GlDevice::GlDevice(Backend backend) {
 
 namespace {
 
-/// The state that the methods of an experiment share.
-struct Rendering {
-    std::shared_ptr<const GlDevice> device;  ///< Outlives the renderers.
-    Renderings renderings;
-    std::vector<std::unique_ptr<Renderer>> renderers;  ///< Null until a method is used.
+/// A single frame takes less than a time slice of the scheduler (see repeats_per_round()).
+constexpr std::size_t frames_per_round = 4;
 
-    Renderer& renderer(std::size_t method) {
-        if (!renderers[method]) {
-            const RenderedMethod& rendered = renderings.methods[method];
-            Report report;
-            renderers[method] =
-                std::make_unique<Renderer>(device->context(), rendered.scene,
-                                           settings_of(rendered, renderings.ground_truth), report);
-        }
-        return *renderers[method];
+/// A rendering that is ready to be drawn.
+class Drawing {
+  public:
+    Drawing(const GlDevice& device, Rendering rendering, int size, PictureMetric metric)
+        : rendering_(std::move(rendering)) {
+        const int side = size * rendering_.pixels_per_side;
+        const FrameSettings settings{
+            side, side, rendering_.samples,
+            metric == PictureMetric::flip ? OutputCoding::srgb : OutputCoding::linear};
+        const Scene& scene = rendering_.scene;
+        FramePlan plan = plan_effects(scene, settings);
+        if (!rendering_.effects.empty())
+            plan = force_effects(scene, settings, std::move(plan), {{}, rendering_.effects});
+        renderer_ = std::make_unique<Renderer>(device.context(), scene, std::move(plan), settings);
     }
 
-    double seconds_of_round(std::size_t method) {
-        return seconds_of_frames(renderer(method), *renderings.methods[method].scene.camera);
+    /// Three channels: 8-bit sRGB, or linear floats.
+    [[nodiscard]] Image picture() {
+        const Image picture = without_alpha(renderer_->draw(*rendering_.scene.camera).image);
+        if (rendering_.pixels_per_side == 1) return picture;
+        return to_srgb(averaged(to_linear(picture), rendering_.pixels_per_side), 8);
+    }
+
+    /// The mean time of a few frames, without reading back.
+    [[nodiscard]] double seconds_of_frames() {
+        Renderer* const only = renderer_.get();
+        const FrameSeries series =
+            time_frames({&only, 1}, *rendering_.scene.camera, {frames_per_round, 0}).front();
+        const double milliseconds = std::accumulate(series.draw.begin(), series.draw.end(), 0.0);
+        return 1e-3 * milliseconds / static_cast<double>(frames_per_round);
+    }
+
+  private:
+    Rendering rendering_;
+    std::unique_ptr<Renderer> renderer_;
+};
+
+PictureError percent_error(const Image& ground_truth, const Image& picture) {
+    const std::span<const float> expected = ground_truth.as<float>();
+    std::vector<float> lost;
+    for (const float radiance : picture.as<float>())
+        lost.push_back(100.0F * std::abs(1.0F - radiance / expected[lost.size()]));
+    return {error_stats(std::move(lost)), {}};
+}
+
+PictureError error_by(PictureMetric metric, const Image& ground_truth, const Image& picture) {
+    return metric == PictureMetric::flip ? picture_error(ground_truth, picture)
+                                         : percent_error(ground_truth, picture);
+}
+
+/// The state that the methods of an experiment share.
+struct State {
+    RenderedExperiment experiment;
+    Renderings renderings;
+    std::vector<std::unique_ptr<Drawing>> drawings;  ///< Null until a method is used.
+
+    Drawing& drawing(std::size_t method) {
+        if (!drawings[method])
+            drawings[method] = std::make_unique<Drawing>(
+                *renderings.device, renderings.methods[method].compute(experiment.x),
+                experiment.size, experiment.metric);
+        return *drawings[method];
     }
 
     /// Renders the image of a method and compares it with the ground truth.
     ErrorStats error_of(std::size_t method) {
-        Image picture = drawn(renderer(method), renderings.methods[method]);
-        PictureError error = picture_error(renderings.ground_truth, picture);
+        Image picture = drawing(method).picture();
+        PictureError error = error_by(experiment.metric, renderings.ground_truth, picture);
         renderings.images[method] = {std::move(picture), std::move(error.map)};
         return error.figures;
+    }
+
+    void finish(Experiment& report) const {
+        if (experiment.finish) experiment.finish(report, renderings);
+        for (const std::size_t i : experiment.shown) {
+            const std::string& name = renderings.methods[i].name;
+            const RenderedImage& image = renderings.images[i];
+            report.pictures.push_back(
+                image_pair(experiment.title, name, image.picture, renderings.ground_truth));
+            report.heat_maps.push_back({"FLIP error", name, image.errors, experiment.brightest});
+        }
     }
 };
 
 }  // namespace
 
-PreparedExperiment prepare_rendering(
-    std::shared_ptr<const GlDevice> device, Experiment report, std::vector<RenderedMethod> methods,
-    Image ground_truth,
-    std::function<void(Experiment& report, const Renderings& renderings)> finish,
-    std::vector<std::string> compared) {
-    const auto state = std::make_shared<Rendering>();
-    const std::size_t count = methods.size();
-    state->device = std::move(device);
-    state->renderings = {std::move(methods), std::move(ground_truth), {}};
-    state->renderings.images.resize(count);
-    state->renderers.resize(count);
-    PreparedExperiment prepared;
-    prepared.report = std::move(report);
-    prepared.compared = std::move(compared);
-    for (std::size_t i = 0; i < count; ++i) {
-        const RenderedMethod& method = state->renderings.methods[i];
-        prepared.methods.push_back({.name = method.name,
-                                    .choices = method.choices,
-                                    .error = [state, i] { return state->error_of(i); },
-                                    .round = [state, i] { return state->seconds_of_round(i); },
-                                    .stored_bytes = method.stored_bytes,
-                                    .note = note_of(method, *state->device)});
+PreparedExperiment prepare_rendering(std::shared_ptr<const GlDevice> device,
+                                     RenderedExperiment experiment) {
+    PreparedExperiment prepared{.report = std::move(experiment.report)};
+    prepared.report.error_unit = experiment.metric == PictureMetric::flip ? "FLIP" : "percent";
+    prepared.report.item = "pixel";
+    prepared.report.items = static_cast<double>(experiment.size) * experiment.size;
+    if (!device->is_available()) {
+        prepared.report.finding =
+            "Not measured: this needs OpenGL, which is not available: " + device->absence();
+        return prepared;
     }
-    set_frame_costs(prepared, *state->device);
-    if (finish) {
-        prepared.finish = [state, finish = std::move(finish)](Experiment& finished) {
-            finish(finished, state->renderings);
-        };
+    const Context& context = device->context();
+    prepared.costs.one_thread = context.is_software();
+    prepared.limits_processors = true;
+    prepared.compared = experiment.compared;
+    const std::string where = fmt::format(
+        "Rendered by {}; the time excludes reading the image back.{}", context.renderer_name(),
+        context.is_software()
+            ? " The time on one thread is that of all threads of the driver on one processor."
+            : "");
+    const auto state = std::make_shared<State>();
+    state->renderings = {
+        std::move(device), std::move(experiment.methods), experiment.ground_truth(), {}};
+    state->experiment = std::move(experiment);
+    const std::vector<RenderedMethod>& methods = state->renderings.methods;
+    state->renderings.images.resize(methods.size());
+    state->drawings.resize(methods.size());
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        const RenderedMethod& method = methods[i];
+        prepared.methods.push_back(
+            {.name = method.name,
+             .choices = method.choices,
+             .error = [state, i] { return state->error_of(i); },
+             .round = [state, i] { return state->drawing(i).seconds_of_frames(); },
+             .stored_bytes = method.stored_bytes,
+             .note = method.note.empty() ? where : method.note + " " + where});
     }
+    prepared.finish = [state](Experiment& report) { state->finish(report); };
     return prepared;
 }
 
-PreparedExperiment not_rendered(Experiment report, const GlDevice& device) {
-    report.finding = "Not measured: this needs OpenGL, which is not available: " + device.absence();
-    return {.report = std::move(report)};
-}
-
-double rendered_error(const GlDevice& device, const RenderedMethod& method,
-                      const Image& ground_truth) {
-    Report report;
-    Renderer renderer(device.context(), method.scene, settings_of(method, ground_truth), report);
-    return picture_error(ground_truth, drawn(renderer, method)).figures.rms;
+Chart rendered_chart(const GlDevice& device, Chart chart,
+                     const std::vector<RenderedMethod>& methods, const std::vector<double>& all_x,
+                     const std::function<Image(double x)>& ground_truth, PictureMetric metric) {
+    return chart_over(
+        std::move(chart), names_of(methods), all_x,
+        [&](double x) { return std::pair(x, ground_truth(x)); },
+        [&](std::size_t i, const std::pair<double, Image>& at) {
+            const auto& [x, expected] = at;
+            Drawing drawing(device, methods[i].compute(x), expected.width, metric);
+            return error_by(metric, expected, drawing.picture()).figures.rms;
+        });
 }
 
 PicturePair image_pair(const std::string& title, const std::string& method, const Image& picture,
                        const Image& ground_truth) {
     return {title, method, "reference", picture, to_srgb(ground_truth, 8)};
-}
-
-void add_images(const std::string& title, const Renderings& renderings, std::size_t method,
-                double brightest, Experiment& experiment) {
-    const std::string& name = renderings.methods[method].name;
-    const RenderedImage& image = renderings.images[method];
-    experiment.pictures.push_back(image_pair(title, name, image.picture, renderings.ground_truth));
-    experiment.heat_maps.push_back({"FLIP error", name, image.errors, brightest});
-}
-
-Experiment image_experiment(int size) {
-    Experiment experiment;
-    experiment.error_unit = "FLIP";
-    experiment.item = "pixel";
-    experiment.items = static_cast<double>(size) * size;
-    return experiment;
 }
 
 Scene lit_scene(Mesh mesh, Material material) {
@@ -215,6 +222,13 @@ std::size_t torus_triangles(int slices) {
 
 std::string name_on_torus(const std::string& method, int slices) {
     return fmt::format("{}, {} triangles", method, torus_triangles(slices));
+}
+
+RenderedMethod method_on_torus(const std::string& choice, const std::string& method, int slices,
+                               const std::function<Scene(int slices)>& scene) {
+    return {name_on_torus(method, slices),
+            {{choice, method}, {"triangles", fmt::format("{}", torus_triangles(slices))}},
+            [=](double) { return Rendering{scene(slices)}; }};
 }
 
 Camera torus_camera() {

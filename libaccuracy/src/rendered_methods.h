@@ -9,13 +9,13 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "experiment_driver.h"
 #include "relief/accuracy/experiment.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/mesh.h"
+#include "relief/shade/effects.h"
 #include "relief/shade/renderer.h"
 #include "relief/shade/scene.h"
 
@@ -36,75 +36,77 @@ class GlDevice {
     std::string absence_;
 };
 
-/// One way to render the scene.
-struct RenderedMethod {
-    std::string name;
-    Choices choices;
+/// A scene, and how it is rendered.
+struct Rendering {
     shade::Scene scene;
     int samples = 1;  ///< Per pixel: 1, or 4 with OpenGL's multisampling.
     /// Rendered pixels along each side of an output pixel; they are averaged afterwards.
     int pixels_per_side = 1;
-    double stored_bytes = 0.0;
-    std::string note = {};
+    std::vector<shade::ForcedEffect> effects = {};
+};
+
+/// A way to render, as a function of a quantity that charts vary, such as the roughness.
+using RenderedMethod = MethodOn<double, Rendering>;
+
+/// How images are compared with the reference image.
+enum class PictureMetric {
+    flip,     ///< FLIP of 8-bit sRGB.
+    percent,  ///< The difference of linear light, in percent of the reference.
 };
 
 /// The image of one method, and its error.
 struct RenderedImage {
-    Image picture;  ///< 8-bit sRGB, three channels.
-    Image errors;   ///< FLIP per pixel.
+    Image picture;  ///< Three channels: 8-bit sRGB, or linear floats with PictureMetric::percent.
+    Image errors;   ///< FLIP per pixel; empty with PictureMetric::percent.
 };
 
 /// The methods of an experiment and what they rendered, by their index.
 struct Renderings {
+    std::shared_ptr<const GlDevice> device;
     std::vector<RenderedMethod> methods;
     Image ground_truth;  ///< Three float channels, linear light.
     std::vector<RenderedImage> images;
 };
 
-/// Prepares an experiment that renders.
-///
-/// \param report  describes the experiment
-/// \param ground_truth  three float channels, linear light; it determines the size of the images
-/// \param finish  as PreparedExperiment::finish; all images exist
-/// \param compared  as PreparedExperiment::compared
+/// An experiment on square images.
+struct RenderedExperiment {
+    Experiment report{};  ///< Describes the experiment, without units and items.
+    int size = 0;         ///< Width and height of the images in pixels.
+    std::vector<RenderedMethod> methods{};
+    double x = 0.0;  ///< The quantity for which the methods render.
+    /// Makes the reference image: three float channels, linear light.
+    std::function<Image()> ground_truth{};
+    PictureMetric metric = PictureMetric::flip;
+    std::vector<std::string> compared{};  ///< PreparedExperiment::compared
+    /// The methods whose images and errors are shown, with a title, and the FLIP error that is
+    /// shown at full brightness.
+    std::vector<std::size_t> shown{};
+    std::string title{};
+    double brightest = 0.5;
+    /// As PreparedExperiment::finish; all images exist.
+    std::function<void(Experiment& report, const Renderings& renderings)> finish{};
+};
+
+/// Prepares an experiment that renders. Without OpenGL, it has no methods, and its finding says why
+/// OpenGL is not available.
 ///
 /// Times are whole frames, from the first command to the last pixel, without reading back and
 /// without the averaging of `pixels_per_side`. The time on all threads uses the threads of the
 /// driver. The time on one thread is measured only with software OpenGL: the same threads on one
 /// processor.
-PreparedExperiment prepare_rendering(
-    std::shared_ptr<const GlDevice> device, Experiment report, std::vector<RenderedMethod> methods,
-    Image ground_truth,
-    std::function<void(Experiment& report, const Renderings& renderings)> finish,
-    std::vector<std::string> compared = {});
+PreparedExperiment prepare_rendering(std::shared_ptr<const GlDevice> device,
+                                     RenderedExperiment experiment);
 
-/// Returns the mean seconds of a few frames of a renderer, without reading back.
-double seconds_of_frames(shade::Renderer& renderer, const shade::Camera& camera);
-
-/// Returns the note on the renderer and its times that every rendered method has.
-std::string rendering_note(const GlDevice& device);
-
-/// Sets which costs of frames are measured, as prepare_rendering() does.
-void set_frame_costs(PreparedExperiment& prepared, const GlDevice& device);
-
-/// An experiment without methods, whose finding says why OpenGL is not available.
-PreparedExperiment not_rendered(Experiment report, const GlDevice& device);
-
-/// The RMS error of one method without timing, for a point of a curve.
-double rendered_error(const GlDevice& device, const RenderedMethod& method,
-                      const Image& ground_truth);
+/// Completes a chart over the quantity on which methods depend.
+/// \param ground_truth  makes the reference image at x
+Chart rendered_chart(const GlDevice& device, Chart chart,
+                     const std::vector<RenderedMethod>& methods, const std::vector<double>& all_x,
+                     const std::function<Image(double x)>& ground_truth,
+                     PictureMetric metric = PictureMetric::flip);
 
 /// The image of a method beside the reference image.
 PicturePair image_pair(const std::string& title, const std::string& method, const Image& picture,
                        const Image& ground_truth);
-
-/// Adds the image of a method beside the reference image, and a heat map of its errors.
-/// \param brightest  the FLIP error that is shown at full brightness
-void add_images(const std::string& title, const Renderings& renderings, std::size_t method,
-                double brightest, Experiment& experiment);
-
-/// An experiment on square images of `size` pixels along each side, with errors in FLIP.
-Experiment image_experiment(int size);
 
 /// Direction in which the light of lit_scene() travels; not unit length.
 inline constexpr glm::vec3 light_direction_world{-0.5F, -0.8F, -0.6F};
@@ -138,8 +140,12 @@ inline constexpr int smooth_torus_slices = 768;
 
 std::size_t torus_triangles(int slices);
 
-/// "flat, 576 triangles"
+/// The name of a method on a torus: "flat, 576 triangles".
 std::string name_on_torus(const std::string& method, int slices);
+
+/// A method on a torus, whose choices are the method and the number of triangles.
+RenderedMethod method_on_torus(const std::string& choice, const std::string& method, int slices,
+                               const std::function<shade::Scene(int slices)>& scene);
 
 /// The camera at which the smooth torus fills the image.
 shade::Camera torus_camera();

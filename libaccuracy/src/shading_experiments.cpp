@@ -7,8 +7,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
-#include <memory>
 #include <numbers>
 
 #include "experiment_parts.h"
@@ -43,40 +41,43 @@ Scene lit_torus(int around, Interpolation interpolation) {
 std::vector<RenderedMethod> interpolation_methods() {
     std::vector<RenderedMethod> methods;
     for (const LightingChoice& choice : lighting_choices) {
-        for (const int around : lighting_slices) {
-            methods.push_back(
-                {name_on_torus(choice.name, around),
-                 {{"lit", choice.name}, {"triangles", fmt::format("{}", torus_triangles(around))}},
-                 lit_torus(around, choice.interpolation)});
-        }
+        for (const int slices : lighting_slices)
+            methods.push_back(method_on_torus("lit", choice.name, slices, [choice](int around) {
+                return lit_torus(around, choice.interpolation);
+            }));
     }
     return methods;
 }
 
 PreparedExperiment interpolation_experiment(const PlanOptions& options) {
     const int size = options.is_quick ? 160 : 320;
-    Experiment experiment = image_experiment(size);
-    experiment.question =
-        "How many triangles make the error of per-face and per-vertex lighting invisible?";
-    experiment.ground_truth = fmt::format(
-        "The reference shader in double on a torus of {} triangles with the exact normals, one "
-        "ray through the center of each pixel. A test verifies that shader by the closed form "
-        "of a lit sphere.",
-        torus_triangles(smooth_torus_slices));
-    experiment.input =
-        fmt::format("torus with a highlight of shininess 40, {0} x {0} pixels", size);
-    const std::shared_ptr<const GlDevice> device = options.device.get();
-    if (!device->is_available()) return not_rendered(std::move(experiment), *device);
     return prepare_rendering(
-        device, std::move(experiment), interpolation_methods(),
-        supersampled_reference(lit_torus(smooth_torus_slices, Interpolation::per_pixel), size, 1),
-        [](Experiment& report, const Renderings& renderings) {
-            report.charts = {torus_chart(report, names_of(lighting_choices), lighting_slices)};
-            for (std::size_t i = 1; i < renderings.methods.size(); i += lighting_slices.size())
-                add_images("Lighting per face, vertex and pixel", renderings, i, 0.5, report);
-        },
-        {"flat, 576 triangles", "Gouraud, 576 triangles", "Phong, 576 triangles",
-         "Gouraud, 9216 triangles"});
+        options.device.get(),
+        {.report =
+             {.question = "How many triangles make the error of per-face and per-vertex lighting "
+                          "invisible?",
+              .ground_truth = fmt::format(
+                  "The reference shader in double on a torus of {} triangles with the exact "
+                  "normals, one ray through the center of each pixel. A test verifies that shader "
+                  "by the closed form of a lit sphere.",
+                  torus_triangles(smooth_torus_slices)),
+              .input =
+                  fmt::format("torus with a highlight of shininess 40, {0} x {0} pixels", size)},
+         .size = size,
+         .methods = interpolation_methods(),
+         .ground_truth =
+             [size] {
+                 return supersampled_reference(
+                     lit_torus(smooth_torus_slices, Interpolation::per_pixel), size, 1);
+             },
+         .compared = {"flat, 576 triangles", "Gouraud, 576 triangles", "Phong, 576 triangles",
+                      "Gouraud, 9216 triangles"},
+         .shown = {1, 1 + lighting_slices.size(), 1 + 2 * lighting_slices.size()},
+         .title = "Lighting per face, vertex and pixel",
+         .finish =
+             [](Experiment& report, const Renderings&) {
+                 report.charts = {torus_chart(report, names_of(lighting_choices), lighting_slices)};
+             }});
 }
 
 /// Reflectance of the metal at normal incidence, in all channels.
@@ -89,7 +90,6 @@ struct HighlightChoice {
     SpecularModel specular;
     double exponent_factor;  ///< Relative to the exponent of Blinn-Phong.
 };
-constexpr std::size_t phong = 0, blinn_phong = 2;  ///< Indices of choices.
 constexpr std::array highlight_choices = {
     HighlightChoice{"Phong, a quarter of Blinn's exponent", "Phong", "a quarter",
                     SpecularModel::phong, 0.25},
@@ -97,7 +97,6 @@ constexpr std::array highlight_choices = {
     HighlightChoice{"Blinn-Phong", "Blinn-Phong", "the same", SpecularModel::blinn_phong, 1.0},
     HighlightChoice{"Blinn-Phong, Phong's exponent", "Blinn-Phong", "a quarter",
                     SpecularModel::blinn_phong, 0.25}};
-constexpr const char* metal_name = "GGX";
 
 double exponent_of(double roughness) {
     return 2.0 / (roughness * roughness * roughness * roughness) - 2.0;
@@ -120,7 +119,7 @@ Scene metal(double roughness) {
     return scene_of(material);
 }
 
-RenderedMethod method_of(const HighlightChoice& choice, double roughness) {
+Scene highlight_of(const HighlightChoice& choice, double roughness) {
     const double exponent = exponent_of(roughness) * choice.exponent_factor;
     Material material;
     material.ambient = material.diffuse = glm::vec3(0.0F);
@@ -128,67 +127,61 @@ RenderedMethod method_of(const HighlightChoice& choice, double roughness) {
     material.shininess = static_cast<float>(exponent);
     material.specular =
         glm::vec3(metal_reflectance * static_cast<float>((exponent_of(roughness) + 2.0) / 8.0));
-    return {
-        choice.name, {{"model", choice.model}, {"exponent", choice.exponent}}, scene_of(material)};
+    return scene_of(material);
 }
 
-std::vector<RenderedMethod> highlight_methods(double roughness) {
+/// Approximations of a metal, by its roughness; GGX comes last.
+std::vector<RenderedMethod> highlight_methods() {
     std::vector<RenderedMethod> methods;
-    for (const HighlightChoice& choice : highlight_choices)
-        methods.push_back(method_of(choice, roughness));
-    methods.push_back({metal_name, {{"model", "GGX"}, {"exponent", "none"}}, metal(roughness)});
+    for (const HighlightChoice& choice : highlight_choices) {
+        methods.push_back(
+            {choice.name,
+             {{"model", choice.model}, {"exponent", choice.exponent}},
+             [choice](double roughness) { return Rendering{highlight_of(choice, roughness)}; }});
+    }
+    methods.push_back({"GGX", {{"model", "GGX"}, {"exponent", "none"}}, [](double roughness) {
+                           return Rendering{metal(roughness)};
+                       }});
     return methods;
-}
-
-/// A ground truth with the value of x for which it was made.
-struct TruthAt {
-    double x;
-    Image ground_truth;
-};
-
-Chart chart_of(const GlDevice& device, int size) {
-    return chart_over(
-        {.id = "roughness",
-         .title = "Error by roughness",
-         .x_label = "roughness",
-         .y_label = "FLIP",
-         .is_x_log = false},
-        names_of(highlight_choices), {0.2, 0.3, 0.4, 0.5, 0.6},
-        [&](double roughness) {
-            return TruthAt{roughness, supersampled_reference(metal(roughness), size, 1)};
-        },
-        [&](std::size_t i, const TruthAt& at) {
-            return rendered_error(device, method_of(highlight_choices.at(i), at.x),
-                                  at.ground_truth);
-        });
 }
 
 PreparedExperiment highlight_experiment(const PlanOptions& options) {
     const int size = options.is_quick ? 160 : 320;
+    const int chart_size = options.is_quick ? 96 : size;
     constexpr double roughness = 0.4;
-    Experiment experiment = image_experiment(size);
-    experiment.question =
-        "How accurately do Phong and Blinn-Phong highlights approximate those of a rough "
-        "metal?";
-    experiment.ground_truth =
-        "A metal of GGX facets, by the reference shader in double, one ray through the "
-        "center of each pixel. Tests verify its GGX by the closed form in another notation, "
-        "and its facets by their number within 45 degrees.";
-    experiment.input = fmt::format(
-        "torus of roughness {0} under two lights, one behind it, {1} x {1} "
-        "pixels; exponent {2:.0f}",
-        roughness, size, exponent_of(roughness));
-    const std::shared_ptr<const GlDevice> device = options.device.get();
-    if (!device->is_available()) return not_rendered(std::move(experiment), *device);
-    return prepare_rendering(device, std::move(experiment), highlight_methods(roughness),
-                             supersampled_reference(metal(roughness), size, 1),
-                             [device = device.get(), chart_size = options.is_quick ? 96 : size](
-                                 Experiment& report, const Renderings& renderings) {
-                                 report.charts = {chart_of(*device, chart_size)};
-                                 for (const std::size_t i : {phong, blinn_phong})
-                                     add_images("Highlights of a rough metal", renderings, i, 0.5,
-                                                report);
-                             });
+    return prepare_rendering(
+        options.device.get(),
+        {.report =
+             {.question = "How accurately do Phong and Blinn-Phong highlights approximate those of "
+                          "a rough metal?",
+              .ground_truth =
+                  "A metal of GGX facets, by the reference shader in double, one ray through the "
+                  "center of each pixel. Tests verify its GGX by the closed form in another "
+                  "notation, and its facets by their number within 45 degrees.",
+              .input = fmt::format("torus of roughness {0} under two lights, one behind it, {1} x "
+                                   "{1} pixels; exponent {2:.0f}",
+                                   roughness, size, exponent_of(roughness))},
+         .size = size,
+         .methods = highlight_methods(),
+         .x = roughness,
+         .ground_truth = [size] { return supersampled_reference(metal(roughness), size, 1); },
+         .shown = {0, 2},
+         .title = "Highlights of a rough metal",
+         .finish =
+             [chart_size](Experiment& report, const Renderings& renderings) {
+                 std::vector<RenderedMethod> methods = highlight_methods();
+                 methods.pop_back();
+                 report.charts = {
+                     rendered_chart(*renderings.device,
+                                    {.id = "roughness",
+                                     .title = "Error by roughness",
+                                     .x_label = "roughness",
+                                     .y_label = "FLIP",
+                                     .is_x_log = false},
+                                    methods, {0.2, 0.3, 0.4, 0.5, 0.6}, [chart_size](double x) {
+                                        return supersampled_reference(metal(x), chart_size, 1);
+                                    })};
+             }});
 }
 
 constexpr int wave_texels = 512;
@@ -241,7 +234,6 @@ struct AliasingChoice {
     int samples;
     int pixels_per_side;
 };
-constexpr std::size_t averaged_normals = 0, averaged_4_pixels = 2, toksvig = 4;  ///< Indices.
 constexpr std::array aliasing_choices = {
     AliasingChoice{"averaged normals", "as sharp as ever", false, 1, 1},
     AliasingChoice{"averaged normals, MSAA", "as sharp as ever", false, 4, 1},
@@ -250,72 +242,67 @@ constexpr std::array aliasing_choices = {
     AliasingChoice{"Toksvig", "widened", true, 1, 1},
     AliasingChoice{"Toksvig, 2 x 2 pixels", "widened", true, 1, 2}};
 
-RenderedMethod method_of(const AliasingChoice& choice, const Image& map, double away) {
-    return {choice.name,
-            {{"highlights", choice.highlights},
-             {"samples a pixel",
-              fmt::format("{}", choice.samples * choice.pixels_per_side * choice.pixels_per_side)}},
-            plane(map, choice.is_antialiased, away),
-            choice.samples,
-            choice.pixels_per_side};
+/// A plane with a number of texels along a pixel of images of a size.
+Scene plane_at(const Image& map, bool is_antialiased, double texels_per_pixel, int size) {
+    return plane(map, is_antialiased, texels_per_pixel * size / wave_texels);
 }
 
-/// The parameter `away` of plane() for a number of texels per pixel.
-double distance_for(double texels_per_pixel, int size) {
-    return texels_per_pixel * size / wave_texels;
-}
-
-/// \param size  of the images; nearly all of the time goes into the rays of the ground truth
-Chart distance_chart(const GlDevice& device, const Image& map, int size, int rays) {
-    constexpr std::array methods = {aliasing_choices[averaged_normals],
-                                    aliasing_choices[averaged_4_pixels], aliasing_choices[toksvig]};
-    return chart_over(
-        {.id = "distance",
-         .title = "Error by texels along a pixel",
-         .x_label = "texels along a pixel",
-         .y_label = "FLIP"},
-        names_of(methods), {0.5, 1.0, 2.0, 4.0, 8.0, 16.0},
-        [&](double texels_per_pixel) {
-            const double distance = distance_for(texels_per_pixel, size);
-            return TruthAt{distance,
-                           supersampled_reference(plane(map, false, distance), size, rays)};
-        },
-        [&](std::size_t i, const TruthAt& at) {
-            return rendered_error(device, method_of(methods.at(i), map, at.x), at.ground_truth);
-        });
+/// By the number of texels along a pixel of images of a size.
+std::vector<RenderedMethod> aliasing_methods(const Image& map, int size) {
+    std::vector<RenderedMethod> methods;
+    for (const AliasingChoice& choice : aliasing_choices) {
+        methods.push_back(
+            {choice.name,
+             {{"highlights", choice.highlights},
+              {"samples a pixel", fmt::format("{}", choice.samples * choice.pixels_per_side *
+                                                        choice.pixels_per_side)}},
+             [=](double texels) {
+                 return Rendering{plane_at(map, choice.is_antialiased, texels, size),
+                                  choice.samples, choice.pixels_per_side};
+             }});
+    }
+    return methods;
 }
 
 PreparedExperiment specular_aliasing_experiment(const PlanOptions& options) {
     const int size = options.is_quick ? 96 : 160;
+    // Nearly all of the time goes into the rays of the ground truth.
+    const int chart_size = options.is_quick ? size / 2 : size;
     const int rays = options.is_quick ? 12 : 16;
     constexpr double shown = 8.0;
-    Experiment experiment = image_experiment(size);
-    experiment.question =
-        "Which method keeps highlights accurate where many texels of a normal map share a "
-        "pixel?";
-    experiment.ground_truth = fmt::format(
-        "The reference shader in double with the normal map at full size, "
-        "mean of {} rays per pixel in linear light.",
-        rays * rays);
-    experiment.input = fmt::format(
-        "shiny plane, shininess 120, {1} texels along a pixel, {0} x {0} "
-        "pixels",
-        size, shown);
-    const std::shared_ptr<const GlDevice> device = options.device.get();
-    if (!device->is_available()) return not_rendered(std::move(experiment), *device);
     const Image map = bumpy_normals();
-    std::vector<RenderedMethod> methods;
-    for (const AliasingChoice& choice : aliasing_choices)
-        methods.push_back(method_of(choice, map, distance_for(shown, size)));
-    Image ground_truth = supersampled_reference(methods.front().scene, size, rays);
+    const auto reference = [map, rays](double texels, int pixels) {
+        return supersampled_reference(plane_at(map, false, texels, pixels), pixels, rays);
+    };
     return prepare_rendering(
-        device, std::move(experiment), std::move(methods), std::move(ground_truth),
-        [device = device.get(), map, chart_size = options.is_quick ? size / 2 : size, rays](
-            Experiment& report, const Renderings& renderings) {
-            report.charts = {distance_chart(*device, map, chart_size, rays)};
-            for (const std::size_t i : {averaged_normals, toksvig})
-                add_images("Highlights at a distance", renderings, i, 0.5, report);
-        });
+        options.device.get(),
+        {.report =
+             {.question = "Which method keeps highlights accurate where many texels of a normal "
+                          "map share a pixel?",
+              .ground_truth = fmt::format("The reference shader in double with the normal map at "
+                                          "full size, mean of {} rays per pixel in linear light.",
+                                          rays * rays),
+              .input = fmt::format("shiny plane, shininess 120, {1} texels along a pixel, {0} x "
+                                   "{0} pixels",
+                                   size, shown)},
+         .size = size,
+         .methods = aliasing_methods(map, size),
+         .x = shown,
+         .ground_truth = [reference, size] { return reference(shown, size); },
+         .shown = {0, 4},
+         .title = "Highlights at a distance",
+         .finish =
+             [map, reference, chart_size](Experiment& report, const Renderings& renderings) {
+                 const std::vector<RenderedMethod> all = aliasing_methods(map, chart_size);
+                 report.charts = {
+                     rendered_chart(*renderings.device,
+                                    {.id = "distance",
+                                     .title = "Error by texels along a pixel",
+                                     .x_label = "texels along a pixel",
+                                     .y_label = "FLIP"},
+                                    {all[0], all[2], all[4]}, {0.5, 1.0, 2.0, 4.0, 8.0, 16.0},
+                                    [&](double texels) { return reference(texels, chart_size); })};
+             }});
 }
 
 Scene cube_and_ring() {
@@ -330,39 +317,38 @@ Scene cube_and_ring() {
 }
 
 std::vector<RenderedMethod> edge_methods() {
-    const Scene scene = cube_and_ring();
-    const auto choices_of = [](const char* way, const char* samples) {
-        return Choices{{"averaged", way}, {"samples a pixel", samples}};
+    const auto method = [](const char* name, const char* way, int samples, int pixels_per_side) {
+        const int count = samples * pixels_per_side * pixels_per_side;
+        return RenderedMethod{
+            name, {{"averaged", way}, {"samples a pixel", fmt::format("{}", count)}}, [=](double) {
+                return Rendering{cube_and_ring(), samples, pixels_per_side};
+            }};
     };
-    return {{"1 sample", choices_of("nothing", "1"), scene, 1, 1},
-            {"MSAA, 4 samples", choices_of("coverage", "4"), scene, 4, 1},
-            {"2 x 2 pixels", choices_of("pixels", "4"), scene, 1, 2},
-            {"2 x 2 pixels, MSAA", choices_of("coverage and pixels", "16"), scene, 4, 2},
-            {"4 x 4 pixels", choices_of("pixels", "16"), scene, 1, 4}};
+    return {method("1 sample", "nothing", 1, 1), method("MSAA, 4 samples", "coverage", 4, 1),
+            method("2 x 2 pixels", "pixels", 1, 2),
+            method("2 x 2 pixels, MSAA", "coverage and pixels", 4, 2),
+            method("4 x 4 pixels", "pixels", 1, 4)};
 }
 
 PreparedExperiment edge_experiment(const PlanOptions& options) {
     const int size = options.is_quick ? 128 : 256;
     const int rays = options.is_quick ? 8 : 16;
-    Experiment experiment = image_experiment(size);
-    experiment.question = "How much does antialiasing of edges cost?";
-    experiment.ground_truth = fmt::format(
-        "The reference shader in double, mean of {} rays per pixel in linear "
-        "light. A test verifies its coverage by the closed form of a disc.",
-        rays * rays);
-    experiment.input =
-        fmt::format("ring and cube before a dark background, {0} x {0} pixels", size);
-    const std::shared_ptr<const GlDevice> device = options.device.get();
-    if (!device->is_available()) return not_rendered(std::move(experiment), *device);
-    std::vector<RenderedMethod> methods = edge_methods();
-    Image ground_truth = supersampled_reference(methods.front().scene, size, rays);
-    return prepare_rendering(device, std::move(experiment), std::move(methods),
-                             std::move(ground_truth),
-                             [](Experiment& report, const Renderings& renderings) {
-                                 for (const std::size_t i : {0U, 1U})
-                                     add_images("Edges", renderings, i, 0.3, report);
-                             },
-                             {"1 sample", "MSAA, 4 samples", "2 x 2 pixels", "4 x 4 pixels"});
+    return prepare_rendering(
+        options.device.get(),
+        {.report = {.question = "How much does antialiasing of edges cost?",
+                    .ground_truth = fmt::format(
+                        "The reference shader in double, mean of {} rays per pixel in linear "
+                        "light. A test verifies its coverage by the closed form of a disc.",
+                        rays * rays),
+                    .input = fmt::format("ring and cube before a dark background, {0} x {0} pixels",
+                                         size)},
+         .size = size,
+         .methods = edge_methods(),
+         .ground_truth = [=] { return supersampled_reference(cube_and_ring(), size, rays); },
+         .compared = {"1 sample", "MSAA, 4 samples", "2 x 2 pixels", "4 x 4 pixels"},
+         .shown = {0, 1},
+         .title = "Edges",
+         .brightest = 0.3});
 }
 
 }  // namespace

@@ -8,8 +8,6 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <span>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "experiment_driver.h"

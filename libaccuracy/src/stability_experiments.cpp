@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <type_traits>
 
 #include "experiment_driver.h"
 #include "relief/mesh/statistics.h"
@@ -81,30 +82,54 @@ std::string Sweeps::breaks() const {
 
 namespace {
 
-/// Methods, and the input whose changes they are swept over.
+/// Methods, and the input that sweeps change.
 template <typename Truth, typename Input, typename Result>
 struct Swept {
     Truth ground_truth;
     std::vector<MethodOn<Input, Result>> methods;
+    const Input& (*input)(const Truth& ground_truth);
+    /// The errors of the result on a changed input.
+    std::vector<float> (*degrees)(const Result& result, const Truth& changed);
+    const char* item;
+    double items = 0.0;
 };
-using SweptNormals = Swept<AnalyticMesh, Mesh, std::vector<glm::vec3>>;
-using SweptTangents = Swept<TexturedMesh, Mesh, TangentFrames>;
-using SweptSlopes = Swept<WaveMap, WaveMap, Image>;
+template <typename Truth>
+const Mesh& mesh_of(const Truth& ground_truth) {
+    return ground_truth.mesh;
+}
+
+/// A quantity that grows as in Sweep, and its effect on an input.
+template <typename Truth>
+struct Growth {
+    std::string id;
+    std::string title;
+    std::string x_label;
+    int decades = 0;
+    int step = 1;
+    std::function<Truth(Truth unchanged, double value)> changed;
+};
+template <typename Truth>
+using Growths = std::vector<Growth<std::type_identity_t<Truth>>>;
 
 /// An experiment whose methods have their errors in all sweeps and their time on one thread. Its
 /// finding gives the values at which methods fail.
 ///
 /// \param report  the input is completed with `unchanged`, the value at which methods are timed
-/// \param functions  in the order of the sweeps
-/// \param input  the input on which methods are timed
 /// \param advice  a sentence for the finding, after a space
-template <typename Input, typename Result>
+template <typename Truth, typename Input, typename Result>
 PreparedExperiment swept_experiment(Experiment report, const std::string& unchanged,
-                                    std::vector<MethodOn<Input, Result>> functions,
-                                    const std::shared_ptr<const Input>& input,
-                                    std::vector<Sweep> all_sweeps, const std::string& advice = {}) {
-    const std::vector<std::string> names = names_of(functions);
-    const auto sweeps = std::make_shared<Sweeps>(names, broken_degrees, std::move(all_sweeps));
+                                    const std::shared_ptr<const Swept<Truth, Input, Result>>& swept,
+                                    const Growths<Truth>& growths, const std::string& advice = {}) {
+    std::vector<Sweep> all_sweeps;
+    for (const Growth<Truth>& one : growths) {
+        all_sweeps.push_back({one.id, one.title, one.x_label, one.decades, one.step,
+                              [swept, changed = one.changed](std::size_t method, double value) {
+                                  const Truth truth = changed(swept->ground_truth, value);
+                                  return swept->degrees(
+                                      swept->methods[method].compute(swept->input(truth)), truth);
+                              }});
+    }
+    std::vector<MethodOn<Input, Result>> functions = swept->methods;
     for (MethodOn<Input, Result>& one : functions) {
         one.choices.emplace_back("guarded", one.is_textbook ? "no" : "yes");
         if (one.is_textbook)
@@ -115,8 +140,14 @@ PreparedExperiment swept_experiment(Experiment report, const std::string& unchan
     prepared.report.input +=
         fmt::format("; the errors are those of all together, the times those {}", unchanged);
     prepared.report.error_unit = "degrees";
+    prepared.report.item = swept->item;
+    prepared.report.items = swept->items;
     prepared.costs = {.all_threads = false, .memory = false};
-    prepared.methods = methods_on(input, functions, [](const auto&) { return ErrorStats(); });
+    prepared.methods =
+        methods_on(std::shared_ptr<const Input>(swept, &swept->input(swept->ground_truth)),
+                   functions, [](const auto&) { return ErrorStats(); });
+    const auto sweeps =
+        std::make_shared<Sweeps>(names_of(functions), broken_degrees, std::move(all_sweeps));
     for (std::size_t i = 0; i < functions.size(); ++i)
         prepared.methods[i].error = [sweeps, i] { return sweeps->measure(i); };
     prepared.finish = [sweeps, advice](Experiment& finished) {
@@ -129,49 +160,7 @@ PreparedExperiment swept_experiment(Experiment report, const std::string& unchan
     return prepared;
 }
 
-/// The same for a mesh with a ground truth.
-template <typename Truth, typename Result>
-PreparedExperiment on_mesh(Experiment report, const std::string& unchanged,
-                           const std::shared_ptr<const Swept<Truth, Mesh, Result>>& swept,
-                           std::vector<Sweep> sweeps, const std::string& advice = {}) {
-    const Mesh& mesh = swept->ground_truth.mesh;
-    report.item = "triangle";
-    report.items = static_cast<double>(mesh.triangles.size());
-    return swept_experiment(std::move(report), unchanged, swept->methods,
-                            std::shared_ptr<const Mesh>(swept, &mesh), std::move(sweeps), advice);
-}
-
-constexpr const char* torus_ground_truth =
-    "The exact normals of the torus in closed form, which do not depend on scale and position. "
-    "Tests verify them by numerical differentiation of the surface.";
-constexpr std::uint32_t torus_seed = 1;
-constexpr std::uint32_t needles_seed = 1;
-
-int torus_cells(bool is_quick) {
-    return is_quick ? 32 : 64;
-}
-
-NormalMethod textbook_normals(const std::string& name,
-                              std::vector<glm::vec3> (*normals)(const Mesh&)) {
-    return {name + ", float32", {{"weighting", name}, {"arithmetic", "float32"}}, normals, true};
-}
-
-/// The methods of the library in both arithmetics, and textbook code.
-std::vector<NormalMethod> swept_normal_methods() {
-    std::vector<NormalMethod> methods = normal_methods(both_arithmetics);
-    methods.push_back(textbook_normals("plain area", textbook_area_normals));
-    methods.push_back(textbook_normals("plain angle", textbook_angle_normals));
-    return methods;
-}
-
-/// The errors of the first normals; `normals` may have more elements than `ground_truth`.
-std::vector<float> normal_degrees(const std::vector<glm::vec3>& normals,
-                                  const std::vector<glm::dvec3>& ground_truth) {
-    std::vector<float> degrees;
-    for (std::size_t v = 0; v < ground_truth.size(); ++v)
-        degrees.push_back(angle_of(glm::dvec3(normals[v]), ground_truth[v]));
-    return degrees;
-}
+// Changes
 
 /// Scales and moves positions or texture coordinates in double, then rounds them to float, as a
 /// file would.
@@ -188,96 +177,123 @@ struct Change {
     }
 };
 
-std::shared_ptr<const SweptNormals> swept_torus(bool is_quick) {
-    return std::make_shared<const SweptNormals>(
-        SweptNormals{analytic_mesh(AnalyticSurface::torus, Triangulation::regular,
-                                   torus_cells(is_quick), torus_seed),
-                     swept_normal_methods()});
+Change smaller(double value) {
+    return {.scale = 1.0 / value};
+}
+Change larger(double value) {
+    return {.scale = value};
+}
+Change farther(double value) {
+    return {.offset = value};
 }
 
-/// The errors of normals on a torus that is changed by the value of a sweep.
-/// \param changed  its first vertices are those of the torus
-auto on_changed_torus(const std::shared_ptr<const SweptNormals>& torus,
-                      std::function<Mesh(const Mesh& mesh, double value)> changed) {
-    return [torus, changed = std::move(changed)](std::size_t method, double value) {
-        return normal_degrees(
-            torus->methods[method].compute(changed(torus->ground_truth.mesh, value)),
-            torus->ground_truth.normals);
+/// Changes the positions or texture coordinates of a mesh.
+template <typename Truth, typename Vector>
+auto changing(std::vector<Vector> Mesh::*values, Change (*change)(double value)) {
+    return [=](Truth truth, double value) {
+        change(value).apply(truth.mesh.*values);
+        return truth;
     };
 }
 
-Mesh with_positions(Mesh mesh, const Change& change) {
-    change.apply(mesh.positions);
-    return mesh;
+// Normals
+
+constexpr const char* torus_ground_truth =
+    "The exact normals of the torus in closed form, which do not depend on scale and position. "
+    "Tests verify them by numerical differentiation of the surface.";
+constexpr std::uint32_t torus_seed = 1;
+constexpr std::uint32_t needles_seed = 1;
+
+int torus_cells(bool is_quick) {
+    return is_quick ? 32 : 64;
+}
+
+NormalMethod textbook_normals(const std::string& name,
+                              std::vector<glm::vec3> (*normals)(const Mesh&)) {
+    return {name + ", float32", {{"weighting", name}, {"arithmetic", "float32"}}, normals, true};
+}
+
+/// The errors of the first normals, which have a ground truth.
+std::vector<float> normal_degrees(const std::vector<glm::vec3>& normals,
+                                  const AnalyticMesh& ground_truth) {
+    std::vector<float> degrees;
+    for (std::size_t v = 0; v < ground_truth.normals.size(); ++v)
+        degrees.push_back(angle_of(glm::dvec3(normals[v]), ground_truth.normals[v]));
+    return degrees;
+}
+
+/// The methods of the library in both arithmetics, and textbook code, on a mesh.
+auto swept_normals(AnalyticMesh mesh) {
+    std::vector<NormalMethod> methods = normal_methods(both_arithmetics);
+    methods.push_back(textbook_normals("plain area", textbook_area_normals));
+    methods.push_back(textbook_normals("plain angle", textbook_angle_normals));
+    const auto triangles = static_cast<double>(mesh.mesh.triangles.size());
+    using SweptNormals = Swept<AnalyticMesh, Mesh, std::vector<glm::vec3>>;
+    return std::make_shared<const SweptNormals>(SweptNormals{std::move(mesh), std::move(methods),
+                                                             mesh_of<AnalyticMesh>, normal_degrees,
+                                                             "triangle", triangles});
+}
+
+auto swept_torus(bool is_quick) {
+    return swept_normals(analytic_mesh(AnalyticSurface::torus, Triangulation::regular,
+                                       torus_cells(is_quick), torus_seed));
 }
 
 PreparedExperiment normals_by_scale(bool is_quick) {
     const auto torus = swept_torus(is_quick);
-    return on_mesh({.question = "At which scales of a mesh are its normals accurate?",
-                    .ground_truth = torus_ground_truth,
-                    .input = fmt::format("torus of {} triangles at 31 scales from 1e-30 to 1e30",
-                                         torus->ground_truth.mesh.triangles.size())},
-                   "at scale 1", torus,
-                   {{"smaller", "Smaller", "times smaller than radius 1", 30, 2,
-                     on_changed_torus(torus,
-                                      [](const Mesh& mesh, double value) {
-                                          return with_positions(mesh, {.scale = 1.0 / value});
-                                      })},
-                    {"larger", "Larger", "times larger than radius 1", 30, 2,
-                     on_changed_torus(torus, [](const Mesh& mesh, double value) {
-                         return with_positions(mesh, {.scale = value});
-                     })}});
+    return swept_experiment(
+        {.question = "At which scales of a mesh are its normals accurate?",
+         .ground_truth = torus_ground_truth,
+         .input =
+             fmt::format("torus of {} triangles at 31 scales from 1e-30 to 1e30", torus->items)},
+        "at scale 1", torus,
+        {{"smaller", "Smaller", "times smaller than radius 1", 30, 2,
+          changing<AnalyticMesh>(&Mesh::positions, smaller)},
+         {"larger", "Larger", "times larger than radius 1", 30, 2,
+          changing<AnalyticMesh>(&Mesh::positions, larger)}});
 }
 
 PreparedExperiment normals_by_offset(bool is_quick) {
     const auto torus = swept_torus(is_quick);
-    return on_mesh(
+    return swept_experiment(
         {.question = "At which distances of a mesh from the origin are its normals accurate?",
          .ground_truth = torus_ground_truth,
-         .input = fmt::format("torus of {} triangles at 9 distances from 1 to 1e8",
-                              torus->ground_truth.mesh.triangles.size())},
+         .input = fmt::format("torus of {} triangles at 9 distances from 1 to 1e8", torus->items)},
         "at the origin", torus,
         {{"offset", "Farther away", "distance along each axis, in radii of the torus", 8, 1,
-          on_changed_torus(torus,
-                           [](const Mesh& mesh, double value) {
-                               return with_positions(mesh, {.offset = value});
-                           })}},
+          changing<AnalyticMesh>(&Mesh::positions, farther)}},
         " float64 is exact for the given positions: its error is that of rounding the positions to "
         "float, which no method can undo. Move meshes to the origin before storing them.");
 }
 
 PreparedExperiment normals_of_needles(bool is_quick) {
     const std::size_t count = is_quick ? 1000 : 4000;
-    const auto methods = std::make_shared<const std::vector<NormalMethod>>(swept_normal_methods());
-    const auto by_width = [methods, count](std::size_t method, double value) {
-        const Needles needles = make_needles(count, 1.0 / value, needles_seed);
-        return normal_degrees((*methods)[method].compute(needles.mesh), needles.normals);
+    const auto by_width = [count](const AnalyticMesh&, double value) {
+        return make_needles(count, 1.0 / value, needles_seed);
     };
-    const auto wide = std::make_shared<const Mesh>(make_needles(count, 1.0, needles_seed).mesh);
     return swept_experiment(
         {.question = "At which widths of a triangle is its normal accurate?",
          .ground_truth =
              "The cross product of the float corners in double; two of them are so near to the "
              "origin that nothing cancels. A test verifies it in integers.",
-         .input =
-             fmt::format("{} single triangles at 13 widths from 1 to 1e-12 of their length", count),
-         .item = "triangle",
-         .items = static_cast<double>(wide->triangles.size())},
-        "at width 1", *methods, wide,
+         .input = fmt::format("{} single triangles at 13 widths from 1 to 1e-12 of their length",
+                              count)},
+        "at width 1", swept_normals(make_needles(count, 1.0, needles_seed)),
         {{"width", "Narrower", "length over width", 12, 1, by_width}});
 }
 
 PreparedExperiment normals_beside_hard_triangles(bool is_quick) {
     const auto torus = swept_torus(is_quick);
-    std::vector<Sweep> sweeps;
+    Growths<AnalyticMesh> growths;
     for (const HardTriangleName& one : hard_triangle_names) {
-        sweeps.push_back(
-            {one.id, one.title, "number of hard triangles", 3, 1,
-             on_changed_torus(torus, [kind = one.kind](const Mesh& mesh, double count) {
-                 return with_hard_triangles(mesh, kind, static_cast<std::size_t>(count));
-             })});
+        growths.push_back({one.id, one.title, "number of hard triangles", 3, 1,
+                           [kind = one.kind](AnalyticMesh mesh, double count) {
+                               mesh.mesh = with_hard_triangles(mesh.mesh, kind,
+                                                               static_cast<std::size_t>(count));
+                               return mesh;
+                           }});
     }
-    return on_mesh(
+    return swept_experiment(
         {.question = "With how many triangles of the hard-case catalogue are the normals around "
                      "them accurate?",
          .ground_truth =
@@ -286,16 +302,18 @@ PreparedExperiment normals_beside_hard_triangles(bool is_quick) {
                          torus_ground_truth),
          .input = fmt::format("torus of {} triangles with 1 to 1000 added hard triangles of five "
                               "kinds",
-                              torus->ground_truth.mesh.triangles.size())},
-        "without them", torus, std::move(sweeps));
+                              torus->items)},
+        "without them", torus, growths);
 }
+
+// Tangents
 
 constexpr const char* textured_torus_ground_truth =
     "The exact tangents of the textured torus in closed form, which do not depend on scale and "
     "position. Tests verify them by numerical differentiation of the surface.";
 
 /// The methods with stored tangents and textbook code, on a textured torus.
-std::shared_ptr<const SweptTangents> textured_torus(bool is_quick) {
+auto textured_torus(bool is_quick) {
     std::vector<FrameMethod> methods;
     for (FrameMethod& method : tangent_methods()) {
         method.choices = {{"frames", method.name}};
@@ -306,62 +324,54 @@ std::shared_ptr<const SweptTangents> textured_torus(bool is_quick) {
                        {{"frames", "plain"}},
                        [](const Mesh& mesh) { return TangentFrames{textbook_tangents(mesh)}; },
                        true});
+    TexturedMesh torus = textured_mesh(AnalyticSurface::torus, Triangulation::regular,
+                                       TextureLayout::upright, torus_cells(is_quick), 1);
+    const auto triangles = static_cast<double>(torus.mesh.triangles.size());
+    using SweptTangents = Swept<TexturedMesh, Mesh, TangentFrames>;
     return std::make_shared<const SweptTangents>(
-        SweptTangents{textured_mesh(AnalyticSurface::torus, Triangulation::regular,
-                                    TextureLayout::upright, torus_cells(is_quick), 1),
-                      std::move(methods)});
-}
-
-/// The errors of tangents on a torus whose positions or texture coordinates are changed by the
-/// value of a sweep.
-template <typename Vector>
-auto on_changed(std::vector<Vector> Mesh::*values,
-                const std::shared_ptr<const SweptTangents>& torus, Change (*change)(double value)) {
-    return [=](std::size_t method, double value) {
-        Mesh mesh = torus->ground_truth.mesh;
-        change(value).apply(mesh.*values);
-        return corner_tangent_angles(torus->ground_truth,
-                                     torus->methods[method].compute(mesh).tangents);
-    };
+        SweptTangents{std::move(torus), std::move(methods), mesh_of<TexturedMesh>,
+                      [](const TangentFrames& frames, const TexturedMesh& changed) {
+                          return corner_tangent_angles(changed, frames.tangents);
+                      },
+                      "triangle", triangles});
 }
 
 PreparedExperiment tangents_by_scale(bool is_quick) {
     const auto torus = textured_torus(is_quick);
-    const auto smaller = [](double value) { return Change{.scale = 1.0 / value}; };
-    const auto larger = [](double value) { return Change{.scale = value}; };
-    return on_mesh(
+    return swept_experiment(
         {.question = "At which scales of a mesh and its texture coordinates are tangents accurate?",
          .ground_truth = textured_torus_ground_truth,
          .input = fmt::format("torus of {} triangles, its positions and its texture coordinates at "
                               "31 scales each from 1e-30 to 1e30",
-                              torus->ground_truth.mesh.triangles.size())},
+                              torus->items)},
         "at scale 1", torus,
         {{"smaller", "Smaller meshes", "times smaller than radius 1", 30, 2,
-          on_changed(&Mesh::positions, torus, smaller)},
+          changing<TexturedMesh>(&Mesh::positions, smaller)},
          {"larger", "Larger meshes", "times larger than radius 1", 30, 2,
-          on_changed(&Mesh::positions, torus, larger)},
+          changing<TexturedMesh>(&Mesh::positions, larger)},
          {"smaller-image", "Smaller texture coordinates", "times smaller than one image", 30, 2,
-          on_changed(&Mesh::texcoords, torus, smaller)},
+          changing<TexturedMesh>(&Mesh::texcoords, smaller)},
          {"larger-image", "Larger texture coordinates", "times larger than one image", 30, 2,
-          on_changed(&Mesh::texcoords, torus, larger)}});
+          changing<TexturedMesh>(&Mesh::texcoords, larger)}});
 }
 
 PreparedExperiment tangents_by_offset(bool is_quick) {
     const auto torus = textured_torus(is_quick);
-    const auto moved = [](double value) { return Change{.offset = value}; };
-    return on_mesh(
+    return swept_experiment(
         {.question = "At which distances of a mesh and its texture coordinates from the origin are "
                      "tangents accurate?",
          .ground_truth = textured_torus_ground_truth,
          .input = fmt::format("torus of {} triangles, its positions and its texture coordinates at "
                               "9 distances each from 1 to 1e8",
-                              torus->ground_truth.mesh.triangles.size())},
+                              torus->items)},
         "at the origin", torus,
         {{"offset", "Meshes farther away", "distance along each axis, in radii", 8, 1,
-          on_changed(&Mesh::positions, torus, moved)},
+          changing<TexturedMesh>(&Mesh::positions, farther)},
          {"offset-image", "Texture coordinates farther away", "distance along each axis, in images",
-          8, 1, on_changed(&Mesh::texcoords, torus, moved)}});
+          8, 1, changing<TexturedMesh>(&Mesh::texcoords, farther)}});
 }
+
+// Height maps
 
 constexpr double swept_wavelength = 32.0;
 
@@ -370,22 +380,30 @@ int map_side(bool is_quick) {
 }
 
 /// Two kernels in both arithmetics and textbook code, on a wave.
-std::shared_ptr<const SweptSlopes> swept_wave(bool is_quick) {
-    SweptSlopes swept{oblique_wave(map_side(is_quick), swept_wavelength, 32), {}};
+auto swept_wave(bool is_quick) {
+    using SweptSlopes = Swept<BumpField, BumpField, Image>;
+    SweptSlopes swept{oblique_wave(map_side(is_quick), swept_wavelength, 32),
+                      {},
+                      [](const BumpField& wave) -> const BumpField& { return wave; },
+                      [](const Image& normals, const BumpField& wave) {
+                          return inner_angles(normals, wave.normals, wave_margin);
+                      },
+                      "texel"};
+    swept.items = static_cast<double>(swept.ground_truth.normals.size());
     for (const Kernel kernel : {Kernel::sobel3, Kernel::central7}) {
         for (const Arithmetic arithmetic : both_arithmetics) {
             const std::string name = name_of(kernel, 0);
             swept.methods.push_back(
                 {fmt::format("{}, {}", name, enum_name(arithmetic)),
                  {{"kernel", name}, {"arithmetic", enum_name(arithmetic)}},
-                 [=](const WaveMap& wave) {
+                 [=](const BumpField& wave) {
                      return normals_by({kernel, 2, arithmetic}, wave.heights, wave.options);
                  }});
         }
     }
     swept.methods.push_back({"plain sobel3",
                              {{"kernel", "sobel3"}, {"arithmetic", "float32"}},
-                             [](const WaveMap& wave) {
+                             [](const BumpField& wave) {
                                  return textbook_sobel_normals(
                                      wave.heights, static_cast<float>(wave.options.strength));
                              },
@@ -394,47 +412,26 @@ std::shared_ptr<const SweptSlopes> swept_wave(bool is_quick) {
 }
 
 /// The wave with its heights multiplied by `times`.
-WaveMap steeper(WaveMap wave, double times) {
+BumpField steeper(BumpField wave, double times) {
     wave.options.strength *= times;
     for (glm::dvec3& normal : wave.normals)
         normal = glm::normalize(normal * glm::dvec3(times, times, 1.0));
     return wave;
 }
 
-WaveMap flatter(WaveMap wave, double times) {
+BumpField flatter(BumpField wave, double times) {
     return steeper(std::move(wave), 1.0 / times);
 }
 
 /// The wave with `by` added to its heights in double, then rounded to float, as a file would.
-WaveMap higher(WaveMap wave, double by) {
+BumpField higher(BumpField wave, double by) {
     for (float& texel : wave.heights.as<float>())
         texel = static_cast<float>(double{texel} + by);
     return wave;
 }
 
-/// The errors of normals on a wave that is changed by the value of a sweep.
-auto on_changed_wave(const std::shared_ptr<const SweptSlopes>& swept,
-                     WaveMap (*changed)(WaveMap wave, double value)) {
-    return [swept, changed](std::size_t method, double value) {
-        const WaveMap wave = changed(swept->ground_truth, value);
-        return inner_angles(swept->methods[method].compute(wave), wave.normals, wave_margin);
-    };
-}
-
-PreparedExperiment slopes_experiment(Experiment report, const std::string& unchanged,
-                                     const std::shared_ptr<const SweptSlopes>& swept,
-                                     std::vector<Sweep> sweeps, const std::string& advice = {}) {
-    const WaveMap& wave = swept->ground_truth;
-    report.item = "texel";
-    report.items = static_cast<double>(wave.normals.size());
-    return swept_experiment(std::move(report), unchanged, swept->methods,
-                            std::shared_ptr<const WaveMap>(swept, &wave), std::move(sweeps),
-                            advice);
-}
-
 PreparedExperiment bump_by_steepness(bool is_quick) {
-    const auto wave = swept_wave(is_quick);
-    return slopes_experiment(
+    return swept_experiment(
         {.question = "At which slopes of a height map are its normals accurate?",
          .ground_truth =
              "The slopes of the wave in closed form, multiplied by the same factor. Tests verify "
@@ -442,14 +439,13 @@ PreparedExperiment bump_by_steepness(bool is_quick) {
          .input = fmt::format("{0} x {0} texels of a wave {1} texels long, at 31 slopes from 1e-30 "
                               "to 1e30",
                               map_side(is_quick), swept_wavelength)},
-        "at slope 1", wave,
-        {{"steeper", "Steeper", "slope", 30, 2, on_changed_wave(wave, steeper)},
-         {"flatter", "Flatter", "1 / slope", 30, 2, on_changed_wave(wave, flatter)}});
+        "at slope 1", swept_wave(is_quick),
+        {{"steeper", "Steeper", "slope", 30, 2, steeper},
+         {"flatter", "Flatter", "1 / slope", 30, 2, flatter}});
 }
 
 PreparedExperiment bump_by_offset(bool is_quick) {
-    const auto wave = swept_wave(is_quick);
-    return slopes_experiment(
+    return swept_experiment(
         {.question = "At which distances of the heights from zero are their normals accurate?",
          .ground_truth =
              "The slopes of the wave in closed form, which do not depend on an added constant. "
@@ -458,8 +454,8 @@ PreparedExperiment bump_by_offset(bool is_quick) {
              fmt::format("{0} x {0} texels of a wave {1} texels long and 10 high, slope 1, at 9 "
                          "heights from 1 to 1e8",
                          map_side(is_quick), swept_wavelength)},
-        "at 0", wave,
-        {{"offset", "Higher", "height above zero, texels", 8, 1, on_changed_wave(wave, higher)}},
+        "at 0", swept_wave(is_quick),
+        {{"offset", "Higher", "height above zero, texels", 8, 1, higher}},
         " The error of float64 is that of rounding these heights to float, which no method can "
         "undo: store heights relative to a zero within their range.");
 }

@@ -75,8 +75,8 @@ class Directions {
 
 }  // namespace
 
-Needles make_needles(std::size_t count, double width, std::uint32_t seed) {
-    Needles needles;
+AnalyticMesh make_needles(std::size_t count, double width, std::uint32_t seed) {
+    AnalyticMesh needles;
     Directions directions(seed);
     for (std::size_t i = 0; i < count; ++i) {
         const glm::dvec3 along = glm::normalize(directions.next());
@@ -93,6 +93,7 @@ Needles make_needles(std::size_t count, double width, std::uint32_t seed) {
         for (std::size_t corner = 0; corner < 3; ++corner) {
             needles.mesh.positions.push_back(corners.at((corner + i) % 3));
             needles.normals.push_back(normal);
+            needles.inner.push_back(1);
         }
         needles.mesh.triangles.emplace_back(first, first + 1, first + 2);
     }

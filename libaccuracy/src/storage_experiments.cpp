@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/gtc/packing.hpp>
 #include <numbers>
@@ -79,7 +78,7 @@ NormalCode named(const std::string& layout, const std::string& bits, const std::
     code.name = layout + " " + bits;
     if (rounding != "nearest") code.name += ", " + rounding;
     code.choices = {{"layout", layout}, {"bits", bits}, {"rounding", rounding}, {"zero", zero}};
-    code.bytes = bytes;
+    code.stored_bytes = bytes;
     return code;
 }
 
@@ -92,8 +91,8 @@ std::string zero_of(FlatCode flat, int bits) {
     return fmt::format("{}", flat == FlatCode::middle ? (largest + 1.0) / 2.0 : largest / 2.0);
 }
 
-/// A normal map whose decoder takes `decoder` for zero. glTF and engines use FlatCode::half.
-NormalCode as_map(const NormalMapFormat& format, FlatCode decoder) {
+/// A normal map whose decoder takes `decoder` for zero, as glTF and engines do by default.
+NormalCode as_map(const NormalMapFormat& format, FlatCode decoder = FlatCode::half) {
     const bool is_float = format.bits == 32;
     NormalCode code =
         named("xyz", is_float ? "float" : fmt::format("{} bit", format.bits), rounding_of(format),
@@ -106,17 +105,12 @@ NormalCode as_map(const NormalMapFormat& format, FlatCode decoder) {
     }
     if (decoder != format.flat)
         code.choices.back().second += ", read as " + zero_of(decoder, format.bits);
-    code.encode = [format, decoder](const Image& normals) -> NormalDecoder {
+    code.compute = [format, decoder](const Image& normals) -> NormalDecoder {
         return [=, codes = encode_normal_map(normals, format)] {
             return decode_normal_map(codes, format.green, decoder);
         };
     };
     return code;
-}
-
-/// A normal map that is encoded and decoded as in glTF and engines.
-NormalCode as_map(const NormalMapFormat& format) {
-    return as_map(format, FlatCode::half);
 }
 
 template <typename Sample>
@@ -133,8 +127,7 @@ Image without_z(const Image& map) {
 NormalCode as_xy_map(const NormalMapFormat& format) {
     NormalCode code = named("xy", fmt::format("{} bit", format.bits), rounding_of(format),
                             2.0 * format.bits / 8.0, zero_of(format.flat, format.bits));
-    code.has_z = false;
-    code.encode = [format](const Image& normals) -> NormalDecoder {
+    code.compute = [format](const Image& normals) -> NormalDecoder {
         const Image map = encode_normal_map(normals, format);
         return [format, codes = format.bits == 8 ? without_z<std::uint8_t>(map)
                                                  : without_z<std::uint16_t>(map)] {
@@ -148,7 +141,7 @@ NormalCode as_xy_map(const NormalMapFormat& format) {
 NormalCode as_ten_bits() {
     constexpr int largest = 511;
     NormalCode code = named("xyz", "10 bit", "nearest", 4.0);
-    code.encode = by_texels(
+    code.compute = by_texels(
         3,
         [](const glm::dvec3& n, std::uint16_t* to) {
             for (int axis = 0; axis < 3; ++axis)
@@ -175,7 +168,7 @@ NormalCode as_halves() {
                                     glm::unpackHalf1x16(from[2]));
             return 2.0 * sample - 1.0;
         });
-    code.encode = [halves](const Image& normals) {
+    code.compute = [halves](const Image& normals) {
         return halves(encode_normal_map(normals, {.bits = 32}));
     };
     return code;
@@ -195,7 +188,7 @@ NormalCode as_octahedral(int bits, bool best) {
     // Two codes occupy 16, 24 or 32 bits in existing formats.
     NormalCode code = named("octahedral", fmt::format("2 x {} bit", bits),
                             best ? "best" : "nearest", std::ceil(2.0 * bits / 8.0));
-    code.encode = by_texels(
+    code.compute = by_texels(
         2,
         [largest, best](const glm::dvec3& n, std::uint16_t* to) {
             const OctahedralCode actual = octahedral_code(n, largest, best);
@@ -218,7 +211,7 @@ std::vector<NormalCode> normal_codes() {
         return NormalMapFormat{bits, Green::up, FlatCode::middle, Dither::none};
     };
     const auto offered = [](NormalCode code, const char* file_and_options) {
-        code.file_and_options = file_and_options;
+        code.command = file_and_options;
         return code;
     };
     std::vector<NormalCode> codes = {
@@ -309,37 +302,33 @@ PreparedExperiment code_experiment(Experiment report,
     prepared.report.item = "texel";
     prepared.report.items = static_cast<double>(input->directions.size());
     prepared.costs.memory = false;
-    for (const NormalCode& code : codes) {
-        // The error encodes the normals, and the work may decode them.
+    prepared.methods = methods_on(std::shared_ptr<const Image>(input, &input->normals), codes,
+                                  [input, error](const NormalCode& code) {
+                                      return error(code, stored(code, input->normals));
+                                  });
+    if (work == StorageWork::encode) return prepared;
+    for (std::size_t i = 0; i < codes.size(); ++i) {
+        // The error encodes the normals, which the work decodes.
         const auto decode = std::make_shared<NormalDecoder>();
-        Method& method = prepared.methods.emplace_back();
-        method.name = code.name;
-        method.choices = code.choices;
-        method.stored_bytes = code.bytes;
-        method.error = [input, code, decode, work, error] {
-            const NormalDecoder decoder = code.encode(input->normals);
-            if (work == StorageWork::decode) *decode = decoder;
-            return error(code, decoder());
+        prepared.methods[i].error = [input, code = codes[i], decode, error] {
+            *decode = code.compute(input->normals);
+            return error(code, (*decode)());
         };
-        if (work == StorageWork::decode)
-            method.work = [decode] { (*decode)(); };
-        else
-            method.work = [input, encode = code.encode] { encode(input->normals); };
+        prepared.methods[i].work = [decode] { (*decode)(); };
     }
     return prepared;
 }
 
 /// The errors of single normals.
 auto texel_errors_of(const std::shared_ptr<const ExactTexels>& input) {
-    return [input](const NormalCode&, const Image& stored) {
-        return map_errors(stored, input->directions);
-    };
+    return
+        [input](const NormalCode&, const Image& map) { return map_errors(map, input->directions); };
 }
 
 Chart patches_chart(const Image& ground_truth, const std::vector<NormalCode>& codes) {
-    std::vector<Image> stored;
+    std::vector<Image> maps;
     for (const NormalCode& code : codes)
-        stored.push_back(code.stored(ground_truth));
+        maps.push_back(stored(code, ground_truth));
     Chart chart = chart_over(
         {.id = "patches",
          .title = "The mean of larger patches",
@@ -347,7 +336,7 @@ Chart patches_chart(const Image& ground_truth, const std::vector<NormalCode>& co
          .y_label = "RMS error of the mean normal, degrees"},
         names_of(codes), {1, 2, 4, 8, 16, 32}, [](double side) { return static_cast<int>(side); },
         [&](std::size_t i, int side) {
-            return curve_error(patch_errors(stored[i], ground_truth, side));
+            return curve_error(patch_errors(maps[i], ground_truth, side));
         });
     for (Curve& curve : chart.curves)
         fit(curve, std::nullopt);
@@ -538,10 +527,8 @@ NormalCode as_blocks(BlockFormat format, BlockQuality quality) {
     NormalCode code;
     code.name = fmt::format("{}, {}", enum_name(format), enum_name(quality));
     code.choices = {{"format", enum_name(format)}, {"quality", enum_name(quality)}};
-    code.bytes = static_cast<double>(bytes_per_block(format)) / 16.0;
-    code.has_z = channels_of(format) > 2;
-    code.is_slow = format == BlockFormat::bc7;
-    code.encode = [format, quality](const Image& normals) -> NormalDecoder {
+    code.stored_bytes = static_cast<double>(bytes_per_block(format)) / 16.0;
+    code.compute = [format, quality](const Image& normals) -> NormalDecoder {
         // BC7 is encoded from the exact components, not from codes of 8 bits.
         auto blocks =
             channels_of(format) == 2
@@ -582,9 +569,14 @@ std::vector<glm::dvec3> compressed_waves(int side, double shortest, double offse
     return wave_heights(side, side, waves).normals;
 }
 
+/// Of other codes, shaders rebuild z after filtering.
+bool has_z(const NormalCode& code) {
+    return !code.name.starts_with("xy ") && !code.name.starts_with("bc5");
+}
+
 /// The normals that bilinear filtering gives at the corners of texels: means of four texels of a
 /// map that tiles.
-Image filtered_at_corners(const Image& normals, bool has_z) {
+Image filtered_at_corners(const Image& normals, const NormalCode& code) {
     const auto width = static_cast<std::size_t>(normals.width);
     const auto height = static_cast<std::size_t>(normals.height);
     Image result = normals;
@@ -595,7 +587,8 @@ Image filtered_at_corners(const Image& normals, bool has_z) {
         glm::dvec3 mean(0.0);
         for (const std::size_t texel : {i, row + right, next_row + i % width, next_row + right})
             mean += 0.25 * normal_at(normals.as<float>(), texel);
-        if (!has_z) mean.z = std::sqrt(std::max(0.0, 1.0 - mean.x * mean.x - mean.y * mean.y));
+        if (!has_z(code))
+            mean.z = std::sqrt(std::max(0.0, 1.0 - mean.x * mean.x - mean.y * mean.y));
         set_normal(result.as<float>(), i, glm::normalize(mean));
     }
     return result;
@@ -603,7 +596,8 @@ Image filtered_at_corners(const Image& normals, bool has_z) {
 
 Chart wavelengths_chart(int side) {
     std::vector<NormalCode> methods = compressions();
-    std::erase_if(methods, [](const NormalCode& method) { return method.is_slow; });
+    // BC7 is slow.
+    std::erase_if(methods, [](const NormalCode& code) { return code.name.starts_with("bc7"); });
     return chart_over(
         {.id = "wavelengths",
          .title = "Shorter waves",
@@ -612,7 +606,7 @@ Chart wavelengths_chart(int side) {
         names_of(methods), {5.0, 10.0, 20.0, 40.0},
         [&](double shortest) { return ExactTexels(compressed_waves(side, shortest), side); },
         [&](std::size_t i, const ExactTexels& waves) {
-            return curve_error(map_errors(methods[i].stored(waves.normals), waves.directions));
+            return curve_error(map_errors(stored(methods[i], waves.normals), waves.directions));
         });
 }
 
@@ -634,10 +628,9 @@ PreparedExperiment compression_experiment(bool is_quick, bool is_filtered) {
          .input = fmt::format("{} x {} texels of 8 waves of 20 texels and more, slope 0.35 (RMS)",
                               side, side)},
         waves, methods, StorageWork::encode,
-        [=, corners = compressed_waves(side, 20.0, 0.5)](const NormalCode& code,
-                                                         const Image& stored) {
-            return is_filtered ? map_errors(filtered_at_corners(stored, code.has_z), corners)
-                               : map_errors(stored, waves->directions);
+        [=, corners = compressed_waves(side, 20.0, 0.5)](const NormalCode& code, const Image& map) {
+            return is_filtered ? map_errors(filtered_at_corners(map, code), corners)
+                               : map_errors(map, waves->directions);
         });
     prepared.compared = {"bc5, fast", "bc5, best", "bc7, fast", "bc7, best", "xyz 8 bit"};
     prepared.finish = [side, is_filtered](Experiment& report) {

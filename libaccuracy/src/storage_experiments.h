@@ -8,8 +8,6 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <span>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "experiment_driver.h"
@@ -26,20 +24,16 @@ enum class StorageWork { encode, decode };
 /// Decodes the normals that were encoded: three float channels.
 using NormalDecoder = std::function<Image()>;
 
-/// One way to store the normals of a map, as texels or as blocks of GPUs.
-struct NormalCode {
-    std::string name;  ///< "xyz 8 bit, blue-noise"
-    Choices choices;
-    double bytes = 0.0;  ///< Per texel, in an existing texture format.
-    /// Takes three float channels with unit normals. Dithering depends on the position of a texel.
-    std::function<NormalDecoder(const Image& normals)> encode;
-    /// Arguments of relief-bake convert that write this code; empty if it cannot.
-    std::string file_and_options{};
-    bool has_z = true;     ///< Otherwise shaders rebuild z after filtering.
-    bool is_slow = false;  ///< Left out of charts.
+/// A way to store the normals of a map, as texels or as blocks of GPUs: "xyz 8 bit, blue-noise". It
+/// encodes three float channels with unit normals; dithering depends on the position of a texel.
+/// The stored bytes are those of a texel in an existing texture format. The command has the
+/// arguments of relief-bake convert that write this code.
+using NormalCode = MethodOn<Image, NormalDecoder>;
 
-    [[nodiscard]] Image stored(const Image& normals) const { return encode(normals)(); }
-};
+/// The normals of a map after encoding and decoding.
+inline Image stored(const NormalCode& code, const Image& normals) {
+    return code.compute(normals)();
+}
 
 /// x, y, z in 8, 10 and 16 bits, half and float (stored as (n + 1) / 2); x and y alone; octahedral
 /// in 2 x 8 to 2 x 16 bits, rounded to the nearest code of each coordinate or to the best of four;

@@ -3,8 +3,6 @@
 // with the frames of the surface in closed form.
 #include "experiment_parts.h"
 
-#include <cmath>
-
 #include "relief/mesh/statistics.h"
 #include "relief/mesh/tangents.h"
 

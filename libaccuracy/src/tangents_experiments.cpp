@@ -3,7 +3,6 @@
 // with the frames of the surface in closed form.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <memory>
 
@@ -62,25 +61,22 @@ shade::Scene bumpy_torus(int around, TangentFrame frame) {
 std::vector<RenderedMethod> frame_methods() {
     std::vector<RenderedMethod> all;
     for (const FrameChoice& choice : frame_choices) {
-        for (const int around : rendered_slices) {
-            all.push_back({name_on_torus(choice.name, around),
-                           {{"frames", choice.name},
-                            {"triangles", fmt::format("{}", torus_triangles(around))}},
-                           bumpy_torus(around, choice.frame),
-                           1,
-                           1,
-                           choice.stored_bytes});
+        for (const int slices : rendered_slices) {
+            all.push_back(method_on_torus("frames", choice.name, slices, [choice](int around) {
+                return bumpy_torus(around, choice.frame);
+            }));
+            all.back().stored_bytes = choice.stored_bytes;
         }
     }
-    RenderedMethod smooth{
-        name_on_torus("no normal map", middle_slices),
-        {{"frames", "none"}, {"triangles", fmt::format("{}", torus_triangles(middle_slices))}},
-        bumpy_torus(middle_slices, TangentFrame::derivatives),
-        1,
-        1,
-        12.0,
-        "The time of a frame without a normal map, for comparison."};
-    smooth.scene.materials.front().normal_map.reset();
+    RenderedMethod smooth =
+        method_on_torus("frames", "no normal map", middle_slices, [](int around) {
+            shade::Scene scene = bumpy_torus(around, TangentFrame::derivatives);
+            scene.materials.front().normal_map.reset();
+            return scene;
+        });
+    smooth.choices.front().second = "none";
+    smooth.stored_bytes = 12.0;
+    smooth.note = "The time of a frame without a normal map, for comparison.";
     all.push_back(std::move(smooth));
     return all;
 }
@@ -89,26 +85,32 @@ std::vector<RenderedMethod> frame_methods() {
 /// frames cost time.
 PreparedExperiment rendered_frames_experiment(const PlanOptions& options) {
     const int size = options.is_quick ? 160 : 320;
-    Experiment experiment = image_experiment(size);
-    experiment.question =
-        "Which tangent frames cost less in rendering: stored ones, or ones that shaders "
-        "derive?";
-    experiment.ground_truth = fmt::format(
-        "The reference shader in double on a torus of {} triangles with MikkTSpace's tangents, "
-        "one ray through the center of each pixel. Tests verify that shader by closed forms.",
-        torus_triangles(smooth_torus_slices));
-    experiment.input = fmt::format("torus with a normal map of waves, {0} x {0} pixels", size);
-    const std::shared_ptr<const GlDevice> device = options.device.get();
-    if (!device->is_available()) return not_rendered(std::move(experiment), *device);
     return prepare_rendering(
-        device, std::move(experiment), frame_methods(),
-        supersampled_reference(bumpy_torus(smooth_torus_slices, TangentFrame::stored), size, 1),
-        [](Experiment& report, const Renderings& renderings) {
-            report.charts = {torus_chart(report, names_of(frame_choices), rendered_slices)};
-            for (std::size_t i = 0; i < renderings.methods.size(); i += rendered_slices.size())
-                add_images("A normal map on few triangles", renderings, i, 0.5, report);
-        },
-        {"stored, 9216 triangles", "derived, 9216 triangles", "no normal map, 9216 triangles"});
+        options.device.get(),
+        {.report =
+             {.question = "Which tangent frames cost less in rendering: stored ones, or ones that "
+                          "shaders derive?",
+              .ground_truth = fmt::format(
+                  "The reference shader in double on a torus of {} triangles with MikkTSpace's "
+                  "tangents, one ray through the center of each pixel. Tests verify that shader by "
+                  "closed forms.",
+                  torus_triangles(smooth_torus_slices)),
+              .input = fmt::format("torus with a normal map of waves, {0} x {0} pixels", size)},
+         .size = size,
+         .methods = frame_methods(),
+         .ground_truth =
+             [size] {
+                 return supersampled_reference(
+                     bumpy_torus(smooth_torus_slices, TangentFrame::stored), size, 1);
+             },
+         .compared = {"stored, 9216 triangles", "derived, 9216 triangles",
+                      "no normal map, 9216 triangles"},
+         .shown = {0, rendered_slices.size(), 2 * rendered_slices.size()},
+         .title = "A normal map on few triangles",
+         .finish =
+             [](Experiment& report, const Renderings&) {
+                 report.charts = {torus_chart(report, names_of(frame_choices), rendered_slices)};
+             }});
 }
 
 constexpr int cells_of_tangent_tables = 64;  ///< The same number as in docs/tangents.md.

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Unwraps a smooth, a noisy and a sharp-edged surface by different options, and measures the
 // stretch, the unused texels, the time and the memory.
-#include "unwrapping_experiments.h"
+#include "experiment_parts.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
 #include <vector>
 
@@ -32,14 +31,9 @@ using test::found;
 using testing::HasSubstr;
 using testing::Not;
 using testing::SizeIs;
+using testing::StartsWith;
 
-AssetOptions untimed_map() {
-    AssetOptions options;
-    options.run.is_timed = false;
-    options.file = "map.png";
-    options.arguments = "map.png";
-    return options;
-}
+const AssetOptions untimed_map = test::untimed_asset("map.png");
 
 BumpField waves(FieldCoding coding) {
     FieldRecipe recipe;
@@ -51,7 +45,7 @@ BumpField waves(FieldCoding coding) {
 
 TEST(AssetHeights, AreThoseOfTheBumpExperiment) {
     const BumpField field = waves(FieldCoding::float32);
-    const AssetExperiment own = measure_asset_heights(field.heights, field.options, untimed_map());
+    const AssetExperiment own = measure_asset_heights(field.heights, field.options, untimed_map);
     EXPECT_THAT(own.experiment.measurements, SizeIs(60));  // Kernels x arithmetics x depths.
     BumpExperimentOptions how;
     how.bump = field.options;
@@ -82,7 +76,7 @@ BumpField noisy_waves() {
 
 TEST(AssetHeights, AreHeldToABoundWithTheErrorOfTheMapItself) {
     const BumpField field = noisy_waves();
-    AssetOptions options = untimed_map();
+    AssetOptions options = untimed_map;
     options.request.max_error = 0.5;
     const AssetExperiment own = measure_asset_heights(field.heights, field.options, options);
     const double map_error = own.experiment.reference_error.value();
@@ -99,7 +93,7 @@ TEST(AssetHeights, AreHeldToABoundWithTheErrorOfTheMapItself) {
 
 TEST(AssetHeights, HaveTheRangeOfTheBumpExperiment) {
     const BumpField field = noisy_waves();
-    const AssetExperiment own = measure_asset_heights(field.heights, field.options, untimed_map());
+    const AssetExperiment own = measure_asset_heights(field.heights, field.options, untimed_map);
     BumpExperimentOptions how;
     how.bump = field.options;
     how.repeats = {0, 0};
@@ -115,14 +109,14 @@ TEST(AssetHeights, HaveTheRangeOfTheBumpExperiment) {
 
 TEST(AssetHeights, WithFewBitsAreAlsoSmoothed) {
     const BumpField field = waves(FieldCoding::bits8);
-    const AssetExperiment own = measure_asset_heights(field.heights, field.options, untimed_map());
+    const AssetExperiment own = measure_asset_heights(field.heights, field.options, untimed_map);
     EXPECT_THAT(own.experiment.measurements, SizeIs(70));
     EXPECT_GE(found(own, "scharr3, float32, 16 bit, steps smoothed").error.count, 96U * 96U);
 }
 
 TEST(AssetHeights, AreTriedInTheBitsAskedForAlone) {
     const BumpField field = waves(FieldCoding::bits8);
-    AssetOptions options = untimed_map();
+    AssetOptions options = untimed_map;
     options.map_bits = {16};
     options.smooths_steps = false;
     const AssetExperiment own = measure_asset_heights(field.heights, field.options, options);
@@ -134,7 +128,7 @@ TEST(AssetHeights, AreTriedInTheBitsAskedForAlone) {
 TEST(AssetHeights, LargeMapsAreMeasuredOnParts) {
     const BumpField field = waves(FieldCoding::float32);
     const AssetExperiment own =
-        measure_asset_heights(field.heights, field.options, untimed_map(), 48 * 48);
+        measure_asset_heights(field.heights, field.options, untimed_map, 48 * 48);
     EXPECT_EQ(own.experiment.input, "2304 texels in nine parts of 96 x 96");
 }
 
@@ -144,7 +138,7 @@ Image normals_of(const BumpField& field) {
 }
 
 TEST(AssetMaps, WithLossyCompressionHaveAnUnknownError) {
-    AssetOptions options = untimed_map();
+    AssetOptions options = untimed_map;
     options.lossy_compression = "JPEG";
     const BumpField field = waves(FieldCoding::bits8);
     const AssetExperiment heights = measure_asset_heights(field.heights, field.options, options);
@@ -166,7 +160,7 @@ TEST(AssetNormalMaps, AreComparedWithTheFile) {
     format.bits = 8;
     const Image map = encode_normal_map(normals_of(waves(FieldCoding::float32)), format, report);
     const Image normals = decode_normal_map(map, Green::up, FlatCode::half, report);
-    const AssetExperiment own = measure_asset_normals(normals, {.bits = 8}, untimed_map());
+    const AssetExperiment own = measure_asset_normals(normals, {.bits = 8}, untimed_map);
     EXPECT_LE(found(own, "xyz float").error.max, 1e-4);
     // Vectors are normalized before they are encoded again, so not all codes stay.
     EXPECT_GT(found(own, "xyz 8 bit").error.rms, 0.0);
@@ -197,7 +191,7 @@ TEST(AssetNormalMaps, UnsuitableCodesHaveTheExpectedError) {
                                 -std::sin(glm::radians(below)));
     }
     const AssetExperiment own =
-        measure_asset_normals(image_of_normals(directions, 32), {.bits = 32}, untimed_map());
+        measure_asset_normals(image_of_normals(directions, 32), {.bits = 32}, untimed_map);
     // x and y in 16 bits have an error of 2^-16, which leaves 0.01 degrees in the computed z so
     // near to the horizon.
     const ErrorStats lost = found(own, "xy 16 bit").error;
@@ -216,20 +210,6 @@ TEST(BumpWords, AreThoseOfTheTools) {
     EXPECT_EQ(name_of(Wraps(Wrap::repeat, Wrap::clamp)), "repeat,clamp");
 }
 
-using test::found;
-using testing::HasSubstr;
-using testing::SizeIs;
-using testing::StartsWith;
-
-AssetOptions quick(bool is_timed) {
-    AssetOptions options;
-    options.run.is_timed = is_timed;
-    options.run.repeats = {2, 0};
-    options.file = "high.obj and low.obj";
-    options.arguments = "high.obj low.obj";
-    return options;
-}
-
 /// Waves over the unit square, several per texel of a map of 32 x 32.
 Mesh waves() {
     Mesh mesh = test::grid(160);
@@ -243,7 +223,10 @@ AssetExperiment measured(const Mesh& high, bool is_timed) {
     Report report;
     const Mesh low = test::grid(1);
     const Baker baker(std::span(&high, 1), low, {}, report);
-    return measure_asset_bake(baker, 32, quick(is_timed));
+    AssetOptions options = test::untimed_asset("high.obj low.obj");
+    options.run.is_timed = is_timed;
+    options.run.repeats = {2, 0};
+    return measure_asset_bake(baker, 32, options);
 }
 
 TEST(AssetBake, GetsTruerWithSamplesAndBits) {

@@ -30,16 +30,10 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
 
-AssetOptions untimed_mesh() {
-    AssetOptions options;
-    options.run.is_timed = false;
-    options.file = "vase.obj";
-    options.arguments = "vase.obj";
-    return options;
-}
+const AssetOptions untimed_mesh = test::untimed_asset("vase.obj");
 
 AssetExperiment normals_of(const Mesh& mesh, const AssetMeshOptions& how = {}) {
-    return measure_asset_mesh(mesh, how, untimed_mesh()).front();
+    return measure_asset_mesh(mesh, how, untimed_mesh).front();
 }
 
 TEST(AssetNormals, FittedSurfaceAgreesWithTheKnownOne) {
@@ -195,7 +189,7 @@ TEST(AssetTangents, AreFromTheImagesOwnDirectionAndFromMikktspace) {
     const TexturedMesh ground_truth = textured_mesh(AnalyticSurface::torus, Triangulation::jittered,
                                                     TextureLayout::upright, 24, 1);
     const std::vector<AssetExperiment> all =
-        measure_asset_mesh(ground_truth.mesh, {}, untimed_mesh());
+        measure_asset_mesh(ground_truth.mesh, {}, untimed_mesh);
     ASSERT_THAT(all, SizeIs(4));
     EXPECT_EQ(all[1].experiment.id, "own/vase.obj/tangents");
     EXPECT_GT(found(all[1], "mikktspace").error.rms, 0.1);
@@ -213,20 +207,20 @@ TEST(AssetTangents, AreFromTheImagesOwnDirectionAndFromMikktspace) {
 TEST(AssetTangents, OnAFlatImageAreAllTheSame) {
     Mesh mesh = test::grid(6);
     mesh.tangents.assign(mesh.positions.size(), glm::vec4(1.0F, 0.0F, 0.0F, 1.0F));
-    const std::vector<AssetExperiment> all = measure_asset_mesh(mesh, {}, untimed_mesh());
+    const std::vector<AssetExperiment> all = measure_asset_mesh(mesh, {}, untimed_mesh);
     for (const Measurement& one : all[1].experiment.measurements)
         EXPECT_LE(one.error.max, 1e-5) << one.method;
     EXPECT_LE(found(all[2], "the file's own").error.max, 1e-5);
     for (glm::vec4& tangent : mesh.tangents)
         tangent = {0.0F, 1.0F, 0.0F, 1.0F};
-    EXPECT_NEAR(found(measure_asset_mesh(mesh, {}, untimed_mesh())[1], "the file's own").error.rms,
+    EXPECT_NEAR(found(measure_asset_mesh(mesh, {}, untimed_mesh)[1], "the file's own").error.rms,
                 90.0, 1e-4);
 }
 
 TEST(AssetTangents, LeaveOutTrianglesWithoutADirection) {
     Mesh mesh = test::grid(4);
     mesh.texcoords.assign(mesh.positions.size(), glm::vec2(0.5F));
-    const std::vector<AssetExperiment> all = measure_asset_mesh(mesh, {}, untimed_mesh());
+    const std::vector<AssetExperiment> all = measure_asset_mesh(mesh, {}, untimed_mesh);
     EXPECT_THAT(all[1].experiment.input, HasSubstr("(32 have no texture gradient)"));
     EXPECT_EQ(all[1].recommendation.method, std::nullopt);
 }
@@ -244,7 +238,7 @@ TEST(AssetMesh, LargeMeshIsMeasuredOnEightRuns) {
 }
 
 TEST(AssetMesh, IsTimedAndRecommendedByTime) {
-    AssetOptions options = untimed_mesh();
+    AssetOptions options = untimed_mesh;
     options.run.is_timed = true;
     options.run.repeats = {3, 0};
     options.costs = {.one_thread = true, .all_threads = false, .memory = false};
@@ -262,8 +256,8 @@ TEST(AssetMesh, CanBeCancelled) {
     Progress progress;
     const ProgressScope scope(progress);
     progress.cancel();
-    EXPECT_THROW(measure_asset_mesh(test::grid(4), {}, untimed_mesh()), Cancelled);
-    EXPECT_THROW(measure_asset_mesh(Mesh{}, {}, untimed_mesh()), InvalidInput);
+    EXPECT_THROW(measure_asset_mesh(test::grid(4), {}, untimed_mesh), Cancelled);
+    EXPECT_THROW(measure_asset_mesh(Mesh{}, {}, untimed_mesh), InvalidInput);
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <set>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -36,9 +35,12 @@ inline accuracy::Experiment run_one(const std::string& id,
     return std::move(all.front());
 }
 
-/// Runs the experiments of one subject.
-inline std::vector<accuracy::Experiment> run_quick(accuracy::Subject subject) {
-    return accuracy::run_experiments(std::array{subject}, quick_untimed());
+/// Options for an asset report of a file, without times.
+inline accuracy::AssetOptions untimed_asset(const std::string& file) {
+    accuracy::AssetOptions options;
+    options.run.is_timed = false;
+    options.file = options.arguments = file;
+    return options;
 }
 
 inline const accuracy::Measurement& measurement_of(const accuracy::Experiment& experiment,

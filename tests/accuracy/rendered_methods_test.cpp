@@ -6,7 +6,6 @@
 
 #include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <memory>
 #include <numbers>
 #include <thread>
@@ -15,7 +14,6 @@
 #include "experiment_driver.h"
 #include "relief/mesh/mesh.h"
 #include "shading_experiments.h"
-#include "single_processor.h"
 #include "support/gl_environment.h"
 #include "support/labels.h"
 
@@ -32,12 +30,20 @@ Scene ball() {
     return lit_scene(make_sphere(), glossy_plastic());
 }
 
+RenderedMethod shown(const std::string& name, const Scene& scene) {
+    return {name, {}, [scene](double) { return Rendering{scene}; }};
+}
+
+/// \param pictures  receives the images
 Experiment render(const std::shared_ptr<const GlDevice>& device,
-                  std::vector<RenderedMethod> methods, int rays_per_side,
-                  const RunOptions& options = test::quick_untimed()) {
+                  const std::vector<RenderedMethod>& methods, const RunOptions& options,
+                  std::vector<RenderedImage>& pictures) {
     return measured(
-        prepare_rendering(device, {}, std::move(methods),
-                          supersampled_reference(ball(), drawn_size, rays_per_side), {}),
+        prepare_rendering(
+            device, {.size = drawn_size,
+                     .methods = methods,
+                     .ground_truth = [] { return supersampled_reference(ball(), drawn_size, 1); },
+                     .finish = [&](Experiment&, const Renderings& all) { pictures = all.images; }}),
         options);
 }
 
@@ -46,12 +52,9 @@ TEST(RenderedMethods, DetectARotatedLight) {
     if (!device->is_available()) GTEST_SKIP() << "no OpenGL";
     Scene broken = ball();
     broken.directional_lights.front().direction_world *= -1.0F;
-    const std::vector<RenderedMethod> methods = {{"right", {}, ball()}, {"broken", {}, broken}};
     std::vector<RenderedImage> pictures;
-    const Experiment experiment = measured(
-        prepare_rendering(device, {}, methods, supersampled_reference(ball(), drawn_size, 1),
-                          [&](Experiment&, const Renderings& all) { pictures = all.images; }),
-        test::quick_untimed());
+    const Experiment experiment = render(device, {shown("right", ball()), shown("broken", broken)},
+                                         test::quick_untimed(), pictures);
     ASSERT_EQ(experiment.measurements.size(), 2U);
     EXPECT_LT(experiment.measurements[0].error.rms, 0.01);
     EXPECT_GT(experiment.measurements[0].error.psnr.value(), 45.0);
@@ -66,10 +69,11 @@ TEST(RenderedMethods, DetectARotatedLight) {
 TEST(RenderedMethods, AreTimedInTurnsInSeconds) {
     const auto device = std::make_shared<const GlDevice>();
     if (!device->is_available()) GTEST_SKIP() << "no OpenGL";
-    const std::vector<RenderedMethod> methods = {{"one", {}, ball()}, {"other", {}, ball()}};
     RunOptions options;
     options.repeats = {.counted = 3, .warm_up = 1};
-    const Experiment experiment = render(device, methods, 1, options);
+    std::vector<RenderedImage> pictures;
+    const Experiment experiment =
+        render(device, {shown("one", ball()), shown("other", ball())}, options, pictures);
     for (const Measurement& one : experiment.measurements) {
         ASSERT_TRUE(one.cost.all_threads);
         EXPECT_EQ(one.cost.all_threads->rounds.size(), 3U);

@@ -48,8 +48,8 @@ Best best_on(const BumpField& field) {
         if (error < best.error) best = {kernel, radius, error};
         return error;
     };
-    for (const NamedKernel& named : named_kernels()) {
-        if (named.kernel != Kernel::gaussian) look_at(named.kernel, 2);
+    for (const BumpMethod& method : kernel_methods()) {
+        if (method.kernel != Kernel::gaussian) look_at(method.kernel, 2);
     }
     double smallest = std::numeric_limits<double>::infinity();
     for (int radius = 1; radius <= max_kernel_radius; radius += radius < 12 ? 1 : 2) {
@@ -63,10 +63,11 @@ Best best_on(const BumpField& field) {
 std::string properties_table() {
     std::string text =
         "| | order | noise gain | direction error at 8 texels | at 16 |\n|---|---|---|---|---|\n";
-    for (const NamedKernel& named : named_kernels()) {
-        const GradientKernel kernel = gradient_kernel(named.kernel, named.radius);
+    for (const BumpMethod& method : kernel_methods()) {
+        const GradientKernel kernel = gradient_kernel(method.kernel, method.gaussian_radius);
         const double degrees = 180.0 / std::numbers::pi;
-        text += fmt::format("| {} | {} | {:.3f} | {} | {} |\n", code_name(named.name), kernel.order,
+        text += fmt::format("| {} | {} | {:.3f} | {} | {} |\n",
+                            code_name(name_of(method.kernel, method.gaussian_radius)), kernel.order,
                             noise_gain(kernel), in_two_digits(anisotropy(kernel, 8.0) * degrees),
                             in_two_digits(anisotropy(kernel, 16.0) * degrees));
     }
@@ -79,16 +80,17 @@ std::string error_table(const std::vector<std::string>& fields) {
     for (const std::string& name : fields) {
         const BumpField field = make_bump_field(field_recipe(name), field_side, field_side);
         std::vector<double> column;
-        for (const NamedKernel& named : named_kernels())
-            column.push_back(rms_error(field, named.kernel, named.radius));
+        for (const BumpMethod& method : kernel_methods())
+            column.push_back(rms_error(field, method.kernel, method.gaussian_radius));
         columns.push_back(column);
         const KernelChoice choice = choose_kernel(field.heights, field.options);
         chosen.push_back({choice.kernel, choice.gaussian_radius,
                           rms_error(field, choice.kernel, choice.gaussian_radius)});
     }
     std::string text = table_header(fields);
-    for (std::size_t row = 0; row < named_kernels().size(); ++row) {
-        text += fmt::format("| {} |", code_name(named_kernels()[row].name));
+    for (std::size_t row = 0; row < kernel_methods().size(); ++row) {
+        const BumpMethod& method = kernel_methods()[row];
+        text += fmt::format("| {} |", code_name(name_of(method.kernel, method.gaussian_radius)));
         for (const std::vector<double>& column : columns) {
             const double smallest = *std::min_element(column.begin(), column.end());
             const std::string cell = in_two_digits(column[row]);

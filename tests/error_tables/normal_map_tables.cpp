@@ -26,7 +26,7 @@ std::string storage_row(const char* name, const std::string& code_name) {
     const Image reference = image_of_normals(smooth_surface(storage_side), storage_side);
     for (const NormalCode& code : normal_codes()) {
         if (code.name != code_name) continue;
-        const Image read = code.stored(reference);
+        const Image read = stored(code, reference);
         std::vector<std::string> cells;
         for (const int block : {1, 4, 16})
             cells.push_back(fmt::format("{:.5f}", patch_errors(read, reference, block).rms));

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "relief/export.h"
@@ -54,19 +53,6 @@ std::span<const BakeSampling> default_bake_samplings();
 
 /// Returns variants of `format`: 8 bits, 8 bits with blue-noise dithering, 16 bits, and float.
 std::vector<NormalMapFormat> default_map_formats(const NormalMapFormat& format);
-
-struct TimedBakeMeasurement {
-    BakeMeasurement measurement;
-    /// By format and round: the time of the bake and its encoding.
-    std::vector<std::vector<double>> seconds;
-};
-
-/// Measures several samplings, interleaved. \throws Cancelled between bakes if cancellation was
-/// requested
-std::vector<TimedBakeMeasurement> measure_interleaved(const BakeReference& reference,
-                                                      std::span<const BakeSampling> samplings,
-                                                      std::span<const NormalMapFormat> formats,
-                                                      const Repeats& repeats);
 
 /// A sampling in one format, with its measured error on a part of the map.
 struct MeasuredBake {

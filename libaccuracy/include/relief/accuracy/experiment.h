@@ -3,7 +3,7 @@
 /// Defines the results of accuracy experiments, and compares two runs of them. A result holds
 /// methods on one input, each with its error against a ground truth and its cost. All reports are
 /// written from this data (tables, JSON, CSV, HTML).
-/// Tests: tests/accuracy/experiment_test.cpp, tests/accuracy/compare_reports_test.cpp.
+/// Tests: tests/accuracy/experiment_test.cpp.
 #pragma once
 
 #include <algorithm>
@@ -197,9 +197,6 @@ struct RunOptions {
     unsigned threads = 0;
     /// Selects experiments by Experiment::id. What is left out is not run. Empty: all.
     std::function<bool(const std::string& id)> selects_experiment{};
-    /// Selects methods by Measurement::method. What is left out is not run. An experiment without
-    /// all of its methods has no charts, pictures and finding. Empty: all.
-    std::function<bool(const std::string& method)> selects_method{};
     /// Called before each experiment of each pass. May throw Cancelled.
     std::function<void(const RunProgress& progress)> tell{};
     /// Called with each experiment as soon as it is complete, in the last pass.
@@ -323,6 +320,8 @@ struct MethodChange {
     std::string method;
     std::vector<FigureChange> figures;  ///< Not empty.
 
+    /// "EXPERIMENT: METHOD", "EXPERIMENT, chart ID: METHOD"
+    [[nodiscard]] std::string name() const;
     /// The figure with the largest growth.
     [[nodiscard]] const FigureChange& worst() const;
 };
@@ -336,8 +335,7 @@ struct ReportComparison {
     /// Peak memory in bytes. A difference counts if it is at least a tenth and a megabyte; smaller
     /// ones result from page granularity and the timing of threads.
     std::vector<MethodChange> memory;
-    /// Only in the old report: "EXPERIMENT: METHOD", "EXPERIMENT, chart ID: METHOD", " at X" for a
-    /// point of a curve.
+    /// Only in the old report: MethodChange::name(), with " at X" for a point of a curve.
     std::vector<std::string> gone;
     std::vector<std::string> added;        ///< Only in the new report.
     std::vector<std::string> other_input;  ///< Experiments whose input differs.

@@ -34,24 +34,9 @@ struct AnalyticHeights {
     std::vector<glm::dvec3> normals;  ///< Unit, y up; computed before heights are rounded to float.
 };
 
-/// Samples a sum of waves at texel centers. \throws InvalidInput if a size is not positive
+/// Samples a sum of waves at the texel centers (x, y) = (0, 0), (1, 0), ... \throws InvalidInput if
+/// a size is not positive
 AnalyticHeights wave_heights(int width, int height, std::span<const HeightWave> waves);
-
-/// A height in texels and its derivatives to the right and downwards.
-struct HeightSample {
-    double height = 0.0;
-    glm::dvec2 slope{};
-};
-
-/// Samples any height field at the texel centers (x, y) = (0, 0), (1, 0), ...
-///
-/// \param field  is called from several threads
-/// \throws InvalidInput if a size is not positive
-AnalyticHeights sampled_heights(
-    int width, int height, const std::function<HeightSample(const glm::dvec2& position)>& field);
-
-/// Evaluates a sum of waves at a position in texels.
-HeightSample evaluate_waves(std::span<const HeightWave> waves, const glm::dvec2& position);
 
 /// Creates waves whose sum tiles: a whole number of periods of each wave fits into width and
 /// height.
