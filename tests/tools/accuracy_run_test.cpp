@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command `relief-accuracy run`: tables, files and errors.
+// The commands `relief-accuracy run`, and `relief-accuracy own` on meshes, maps and pairs: tables,
+// files and errors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <functional>
+#include <limits>
+
 #include <nlohmann/json.hpp>
 
+#include "relief/mesh/image_file.h"
 #include "support/labels.h"
 #include "support/sanitized.h"
 #include "tools/schema_page.h"
@@ -92,6 +98,247 @@ TEST(AccuracyRefusal, IsOneLine) {
          {"relief-accuracy run storage --quiet", 2,
           "--quiet without --output would discard the results"},
          {"relief-accuracy run storage --output taken", 1, "taken: exists, but is not a folder"}});
+}
+
+const json& measurement(const json& experiment, const std::string& method) {
+    for (const json& one : experiment["measurements"]) {
+        if (one["method"] == method) return one;
+    }
+    throw std::runtime_error("no method " + method);
+}
+
+TEST_LABELS(not_sanitized);
+TEST(AccuracyOwn, MeasuresAMeshAndRecommends) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    const ProgramResult result =
+        workplace.run("relief-accuracy own square.obj --no-times --truth surface");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("square.obj: a mesh"));
+    EXPECT_THAT(result.out, HasSubstr("own/square.obj/normals"));
+    EXPECT_THAT(result.out, HasSubstr("no recommendation: the mesh is too coarse"));
+    EXPECT_THAT(result.out, HasSubstr("To do it: relief-mesh process square.obj"));
+    EXPECT_EQ(workplace.outputs(), "") << "nothing is written unless asked for";
+}
+
+TEST_LABELS(not_sanitized);
+TEST(AccuracyOwn, JsonHoldsTheCommandThatRepeatsIt) {
+    const Workplace workplace;
+    workplace.write_square("a square.obj");
+    const ProgramResult result = workplace.run(
+        "relief-accuracy own 'a square.obj' --no-times --crease 30 --max-error 5 --json");
+    const json report = json::parse(result.out);
+    EXPECT_EQ(report["command"],
+              "relief-accuracy own 'a square.obj' --crease 30 --max-error 5 --no-times");
+    EXPECT_EQ(report["experiments"][0]["command"], report["command"]);
+    EXPECT_EQ(report["experiments"][1]["id"], "own/a square.obj/tangents");
+    EXPECT_NEAR(measurement(report["experiments"][1], "mikktspace")["error"]["max"].get<double>(),
+                0.0, 1e-4);
+}
+
+TEST_LABELS(not_sanitized);
+TEST(AccuracyOwn, DistinguishesHeightsFromNormals) {
+    const Workplace workplace;
+    workplace.write_bricks("bricks.png");
+    const ProgramResult heights =
+        workplace.run("relief-accuracy own bricks.png --quick --no-times --strength 4");
+    ASSERT_EQ(heights.exit_code, 0) << heights.error;
+    EXPECT_THAT(heights.out, HasSubstr("bricks.png: a height map of "));
+    EXPECT_THAT(heights.out, HasSubstr("(if not: --image normals)"));
+    EXPECT_THAT(heights.out, HasSubstr("To do it: relief-bake bump bricks.png OUT."));
+    ASSERT_EQ(workplace.run("relief-bake bump bricks.png out/normals.png --strength 4").exit_code,
+              0);
+    const ProgramResult normals =
+        workplace.run("relief-accuracy own out/normals.png --quick --no-times");
+    EXPECT_THAT(normals.out, HasSubstr("out/normals.png: a normal map of 16 bits"));
+    EXPECT_THAT(normals.out, HasSubstr("(if not: --image heights)"));
+    const ProgramResult told =
+        workplace.run("relief-accuracy own out/normals.png --quick --no-times --image heights");
+    EXPECT_THAT(told.out, HasSubstr("a height map of 16 bits"));
+    EXPECT_THAT(told.out, Not(HasSubstr("if not:")));
+}
+
+TEST_LABELS(not_sanitized);
+TEST(AccuracyOwn, NeedsHighAndLowForAPair) {
+    const Workplace workplace;
+    workplace.write_square("high.obj");
+    workplace.write_square("low.obj");
+    const ProgramResult pair = workplace.run(
+        "relief-accuracy own --high high.obj --low low.obj --size 16 --no-times --json");
+    ASSERT_EQ(pair.exit_code, 0) << pair.error;
+    const json report = json::parse(pair.out);
+    EXPECT_EQ(report["experiments"].size(), 1U);
+    EXPECT_EQ(report["experiments"][0]["subject"], "bake");
+    EXPECT_LE(
+        measurement(report["experiments"][0], "1 sample, 16 bit")["error"]["max"].get<double>(),
+        0.01);
+    const ProgramResult two =
+        workplace.run("relief-accuracy own high.obj low.obj --no-times --json");
+    EXPECT_EQ(json::parse(two.out)["experiments"].size(), 8U);
+}
+
+TEST_LABELS(not_sanitized);
+TEST(AccuracyOwn, JpegFilesHaveAnUnknownError) {
+    const Workplace workplace;
+    workplace.write_bricks("bricks.png");
+    const Image heights = read_image(workplace / "bricks.png", ImageUse::data);
+    Image coarse = make_image(heights.width, heights.height, 1, 8, ColorSpace::data);
+    for (std::size_t i = 0; i < coarse.sample_count(); ++i)
+        coarse.as<std::uint8_t>()[i] =
+            static_cast<std::uint8_t>(heights.as<std::uint16_t>()[i] / 257U);
+    write_image(workplace / "bricks.jpg", coarse);
+    const std::string line = "relief-accuracy own bricks.jpg --quick --no-times";
+    const ProgramResult result = workplace.run(line);
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("and the unknown loss of the file's JPEG compression"));
+    EXPECT_THAT(result.out, Not(HasSubstr("expected")));
+    const ProgramResult bounded = workplace.run(line + " --max-error 90");
+    EXPECT_EQ(bounded.exit_code, 1);
+    EXPECT_THAT(bounded.out, HasSubstr("no method is known to be within 90 degrees (99 %)"));
+}
+
+TEST_LABELS(not_sanitized);
+TEST(AccuracyOwn, UnreachableLimitExitsWith1) {
+    const Workplace workplace;
+    workplace.write_bricks("bricks.png");
+    const std::string line = "relief-accuracy own bricks.png --quick --no-times --max-error ";
+    EXPECT_EQ(workplace.run(line + "90").exit_code, 0);
+    const ProgramResult strict = workplace.run(line + "0");
+    EXPECT_EQ(strict.exit_code, 1);
+    EXPECT_THAT(strict.out,
+                HasSubstr("no method is within 0 degrees (99 %): the smallest error is "));
+}
+
+/// Returns heights of smooth bumps, 0 to 1.
+double bump_at(int x, int y) {
+    return 0.5 + 0.2 * std::sin(0.2 * x) + 0.2 * std::sin(0.15 * y + 0.1 * x);
+}
+
+Image image_of_bumps(int channels, const std::function<double(int channel, double bump)>& value) {
+    constexpr int side = 64;
+    Image image = make_image(side, side, channels, 8, ColorSpace::data);
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            for (int channel = 0; channel < channels; ++channel) {
+                image.as<std::uint8_t>()[static_cast<std::size_t>((y * side + x) * channels +
+                                                                  channel)] =
+                    static_cast<std::uint8_t>(255.0 * value(channel, bump_at(x, y)));
+            }
+        }
+    }
+    return image;
+}
+
+TEST_LABELS(not_sanitized);
+TEST(AccuracyOwn, WarnsAboutPhotographs) {
+    const Workplace workplace;
+    const auto in_color = [](int channel, double bump) {
+        return channel == 0 ? bump : channel == 1 ? bump * bump : 0.2;
+    };
+    write_image(workplace / "photo.png", image_of_bumps(3, in_color));
+    const ProgramResult photo = workplace.run("relief-accuracy own photo.png --quick --no-times");
+    ASSERT_EQ(photo.exit_code, 0) << photo.error;
+    EXPECT_THAT(photo.out, HasSubstr("photo.png: a height map of 8 bits"));
+    EXPECT_THAT(photo.out, HasSubstr("findings  4096 x texel whose red, green and blue differ"));
+    const json found =
+        json::parse(workplace.run("relief-accuracy own photo.png --quick --no-times --json").out);
+    EXPECT_EQ(found["experiments"][0]["input_findings"].size(), 1U);
+    write_image(workplace / "gray.png", image_of_bumps(3, [](int, double bump) { return bump; }));
+    EXPECT_THAT(workplace.run("relief-accuracy own gray.png --quick --no-times").out,
+                HasSubstr("findings  none\n"));
+}
+
+TEST_LABELS(not_sanitized);
+TEST(AccuracyOwn, MeasuresHeightsInAlpha) {
+    const Workplace workplace;
+    const auto in_alpha = [](int channel, double bump) {
+        return channel == 3 ? bump : channel == 0 ? 0.9 : 0.3;
+    };
+    write_image(workplace / "packed.png", image_of_bumps(4, in_alpha));
+    write_image(workplace / "alone.png", image_of_bumps(1, [](int, double bump) { return bump; }));
+    const std::string options = " --quick --no-times --json --image heights";
+    const json blind = json::parse(
+        workplace.run("relief-accuracy own packed.png" + options).out)["experiments"][0];
+    EXPECT_THAT(blind["input_findings"].dump(),
+                HasSubstr("texel whose alpha differs from the first one's"));
+    const json packed =
+        json::parse(workplace.run("relief-accuracy own packed.png --channel alpha" + options).out);
+    const json& in_packed = packed["experiments"][0];
+    const json alone =
+        json::parse(workplace.run("relief-accuracy own alone.png" + options).out)["experiments"][0];
+    EXPECT_EQ(packed["command"],
+              "relief-accuracy own packed.png --image heights --channel alpha --quick --no-times");
+    EXPECT_TRUE(in_packed["input_findings"].empty());
+    // The heights of a packed map are floats, so rounding differs.
+    EXPECT_NEAR(measurement(in_packed, "sobel3, float64, 16 bit")["error"]["rms"].get<double>(),
+                measurement(alone, "sobel3, float64, 16 bit")["error"]["rms"].get<double>(), 1e-4);
+    EXPECT_GT(measurement(alone, "sobel3, float64, 16 bit")["error"]["rms"].get<double>(), 1e-3);
+    const auto finding = in_packed["finding"].get<std::string>();
+    EXPECT_THAT(finding, HasSubstr(" --channel alpha"));
+    const std::string command = finding.substr(finding.find("relief-bake bump packed.png OUT."));
+    const std::string extension = command.substr(command.find("OUT.") + 3, 4);
+    const std::string done =
+        std::string(command).replace(command.find("OUT."), 7, "out" + extension);
+    EXPECT_EQ(workplace.run(done).exit_code, 0) << done;
+}
+
+TEST_LABELS(not_sanitized);
+TEST(AccuracyOwn, ReportsNonFiniteHeights) {
+    const Workplace workplace;
+    Image heights = to_float(image_of_bumps(1, [](int, double bump) { return bump; }));
+    heights.as<float>()[70] = std::numeric_limits<float>::quiet_NaN();
+    heights.as<float>()[900] = std::numeric_limits<float>::infinity();
+    write_image(workplace / "nan.exr", heights);
+    const ProgramResult result = workplace.run("relief-accuracy own nan.exr --quick --no-times");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out,
+                HasSubstr("findings  2 x non-finite height (column 6, row 1; column 4, row 14): "));
+}
+
+TEST_LABELS(not_sanitized);
+TEST(AccuracyOwn, CanKeepANormalMapUnchanged) {
+    const Workplace workplace;
+    workplace.write_bricks("bricks.png");
+    ASSERT_EQ(workplace.run("relief-bake bump bricks.png map.png --bits 8").exit_code, 0);
+    const json experiment =
+        json::parse(workplace.run("relief-accuracy own map.png --quick --no-times --json")
+                        .out)["experiments"][0];
+    const json& kept = measurement(experiment, "as it is");
+    EXPECT_EQ(kept["error"]["max"], 0.0);
+    EXPECT_EQ(kept["cost"]["stored_bytes"], 3.0);
+    const auto finding = experiment["finding"].get<std::string>();
+    EXPECT_THAT(finding, testing::StartsWith("as it is: "));
+    EXPECT_THAT(finding, testing::EndsWith("To do it: relief-bake convert map.png OUT.png"));
+    ASSERT_EQ(workplace.run("relief-bake convert map.png out.png").exit_code, 0);
+    EXPECT_TRUE(read_image(workplace / "out.png", ImageUse::data).samples ==
+                read_image(workplace / "map.png", ImageUse::data).samples);
+}
+
+TEST(OwnRefusal, IsOneLine) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    workplace.write("other.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    expect_refusals(workplace, "relief-accuracy", "old",
+                    {{"relief-accuracy own", 2,
+                      "no input (name a mesh, a map, or --high and "
+                      "--low)"},
+                     {"relief-accuracy own --high square.obj", 2,
+                      "--high: requires the other mesh of the pair (give --low FILE)"},
+                     {"relief-accuracy own square.obj square.obj", 2, "square.obj: given twice"},
+                     {"relief-accuracy own square.obj --strength 3", 2,
+                      "--strength: applies only to height maps"},
+                     {"relief-accuracy own square.obj --channel alpha", 2,
+                      "--channel: applies only to height maps"},
+                     {"relief-accuracy own square.obj --size 64", 2,
+                      "--size: applies only to a pair, --high and --low"},
+                     {"relief-accuracy own square.obj --max-error-kind max", 2,
+                      "--max-error-kind: has no effect without --max-error (give --max-error DEG)"},
+                     {"relief-accuracy own square.obj --no-times --max-time 3", 2,
+                      "--no-times and --max-time contradict each other"},
+                     {"relief-accuracy own other.obj --truth file --no-times", 1,
+                      "other.obj: the mesh has no normals to compare with"},
+                     {"relief-accuracy own --high square.obj --low other.obj --no-times", 1,
+                      "other.obj: no texture coordinates for the map"}});
 }
 
 }  // namespace

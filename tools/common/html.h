@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Text and pictures in HTML pages that load nothing.
-/// Tests: tests/tools/accuracy_page/report_html_test.cpp.
+/// Tests: tests/tools/accuracy_page/report_page_test.cpp.
 #pragma once
 
 #include <string>

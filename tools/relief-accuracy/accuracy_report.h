@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "processor_use.h"
 #include "relief/accuracy/experiment.h"
 
 namespace relief::tools {
@@ -30,6 +29,33 @@ struct Machine {
     std::optional<std::string> opengl;
 
     friend bool operator==(const Machine&, const Machine&) = default;
+};
+
+/// The processors that other programs used during a run.
+struct OtherPrograms {
+    double processors = 0.0;  ///< The mean over the run.
+    unsigned available = 0;   ///< All processors of the machine.
+
+    /// Returns whether they lengthened wall-clock times noticeably.
+    [[nodiscard]] bool is_busy() const { return processors > 0.05 * available; }
+
+    friend bool operator==(const OtherPrograms&, const OtherPrograms&) = default;
+};
+
+/// "used 1.7 of 2 processors: the machine was busy, and wall-clock times are too long"
+std::string to_string(const OtherPrograms& others);
+
+/// Measures processor times from its construction. On Linux it reads /proc/stat.
+class ProcessorUse {
+  public:
+    ProcessorUse();
+    /// Returns the use by others since construction; nullopt if the system does not state it.
+    [[nodiscard]] std::optional<OtherPrograms> of_others() const;
+
+  private:
+    double wall_seconds_ = 0.0;
+    double own_seconds_ = 0.0;
+    std::optional<double> all_seconds_;
 };
 
 /// The version of the JSON that is written and read.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The commands of relief-accuracy, and the options that `run` and `own` share: how to run
-/// experiments, and the output of the report. Tests: tests/tools/accuracy_run_test.cpp,
-/// accuracy_own_test.cpp.
+/// experiments, and the output of the report. Tests: tests/tools/accuracy_run_test.cpp.
 #pragma once
 
 #include <filesystem>

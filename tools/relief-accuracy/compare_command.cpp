@@ -77,11 +77,6 @@ std::string line_of(const TimeRatio& times) {
                        times.ratio.high, counted(times.methods, "method"), verdict_of(times));
 }
 
-std::string change_name(const MethodChange& change) {
-    return fmt::format("{}{}: {}", change.experiment,
-                       change.chart.empty() ? "" : ", chart " + change.chart, change.method);
-}
-
 /// "rms 0.1 then 0.11", "memory 12 MB then 24 MB"
 std::string text_of(const FigureChange& change) {
     const auto text = [&](double value) {
@@ -102,7 +97,7 @@ std::string line_of(const MethodChange& change) {
     std::vector<std::string> figures;
     for (const FigureChange& one : worst)
         figures.push_back(text_of(one));
-    return fmt::format("{}: {}{}", change_name(change), fmt::join(figures, ", "),
+    return fmt::format("{}: {}{}", change.name(), fmt::join(figures, ", "),
                        more > 0 ? fmt::format(" and {} more", more) : "");
 }
 
@@ -153,7 +148,7 @@ void add_growth(std::vector<std::string>& lines, const std::vector<MethodChange>
     if (!limit) return;
     for (const MethodChange& change : changes_that(changes, true)) {
         if (100.0 * change.worst().growth() <= *limit) continue;
-        lines.push_back(fmt::format("{}: {} (at most {} % more)", change_name(change),
+        lines.push_back(fmt::format("{}: {} (at most {} % more)", change.name(),
                                     text_of(change.worst()), *limit));
     }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `relief-accuracy own FILE...` measures the methods on the user's meshes and maps, and
 // recommends one.
-// Tests: tests/tools/accuracy_own_test.cpp.
+// Tests: tests/tools/accuracy_run_test.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 ///
 /// Lengths are pixels, and colors are CSS classes of page/plot.css. Methods and curves have their
 /// index as data-index, by which the script of the page shows and hides them.
-/// Tests: tests/tools/accuracy_page/plots_test.cpp, and report_page_test.py in a browser.
+/// Tests: tests/tools/accuracy_page/report_page_test.cpp, and report_page_test.py in a browser.
 #pragma once
 
 #include <cstddef>

@@ -22,10 +22,10 @@ using namespace relief::detail;
 
 namespace {
 
-/// A member of a struct.
-template <typename Struct, typename Member>
+/// A member of a struct. An optional one is absent if it has the value of a default struct.
+template <typename Struct, typename Member, bool optional = false>
 struct Field {
-    static constexpr bool is_optional = false;
+    static constexpr bool is_optional = optional;
     const char* key;
     Member Struct::*member;
 };
@@ -33,16 +33,10 @@ struct Field {
 template <typename Struct, typename Member>
 Field(const char*, Member Struct::*) -> Field<Struct, Member>;
 
-/// A member that is absent if it has the value of a default struct.
 template <typename Struct, typename Member>
-struct OptionalField {
-    static constexpr bool is_optional = true;
-    const char* key;
-    Member Struct::*member;
-};
-
-template <typename Struct, typename Member>
-OptionalField(const char*, Member Struct::*) -> OptionalField<Struct, Member>;
+constexpr Field<Struct, Member, true> maybe(const char* key, Member Struct::*member) {
+    return {key, member};
+}
 
 template <typename Struct>
 constexpr auto fields = std::tuple{};
@@ -58,52 +52,46 @@ constexpr auto fields<OtherPrograms> = std::tuple{Field{"processors", &OtherProg
                                                   Field{"available", &OtherPrograms::available}};
 
 template <>
-constexpr auto fields<RunSettings> =
-    std::tuple{Field{"quick", &RunSettings::quick},
-               Field{"timed", &RunSettings::timed},
-               Field{"repeats", &RunSettings::repeats},
-               OptionalField{"passes", &RunSettings::passes},
-               Field{"threads", &RunSettings::threads},
-               OptionalField{"other_programs", &RunSettings::other_programs}};
+constexpr auto fields<RunSettings> = std::tuple{
+    Field{"quick", &RunSettings::quick},     Field{"timed", &RunSettings::timed},
+    Field{"repeats", &RunSettings::repeats}, maybe("passes", &RunSettings::passes),
+    Field{"threads", &RunSettings::threads}, maybe("other_programs", &RunSettings::other_programs)};
 
 template <>
 constexpr auto fields<ErrorStats> =
-    std::tuple{Field{"count", &ErrorStats::count},      Field{"undefined", &ErrorStats::undefined},
-               Field{"rms", &ErrorStats::rms},          Field{"mean", &ErrorStats::mean},
-               Field{"p99", &ErrorStats::p99},          Field{"max", &ErrorStats::max},
-               OptionalField{"psnr", &ErrorStats::psnr}};
+    std::tuple{Field{"count", &ErrorStats::count}, Field{"undefined", &ErrorStats::undefined},
+               Field{"rms", &ErrorStats::rms},     Field{"mean", &ErrorStats::mean},
+               Field{"p99", &ErrorStats::p99},     Field{"max", &ErrorStats::max},
+               maybe("psnr", &ErrorStats::psnr)};
 
 template <>
-constexpr auto fields<Cost> = std::tuple{OptionalField{"one_thread", &Cost::one_thread},
-                                         OptionalField{"all_threads", &Cost::all_threads},
-                                         OptionalField{"peak_bytes", &Cost::peak_bytes},
-                                         OptionalField{"stored_bytes", &Cost::stored_bytes}};
+constexpr auto fields<Cost> =
+    std::tuple{maybe("one_thread", &Cost::one_thread), maybe("all_threads", &Cost::all_threads),
+               maybe("peak_bytes", &Cost::peak_bytes), maybe("stored_bytes", &Cost::stored_bytes)};
 
 template <>
 constexpr auto fields<ExpectedError> =
     std::tuple{Field{"map", &ExpectedError::map}, Field{"added", &ExpectedError::added}};
 
 template <>
-constexpr auto fields<Measurement> =
-    std::tuple{Field{"method", &Measurement::method},
-               Field{"choices", &Measurement::choices},
-               Field{"error", &Measurement::error},
-               Field{"cost", &Measurement::cost},
-               Field{"efficient", &Measurement::is_pareto_optimal},
-               Field{"note", &Measurement::note},
-               OptionalField{"expected_error", &Measurement::expected}};
+constexpr auto fields<Measurement> = std::tuple{Field{"method", &Measurement::method},
+                                                Field{"choices", &Measurement::choices},
+                                                Field{"error", &Measurement::error},
+                                                Field{"cost", &Measurement::cost},
+                                                Field{"efficient", &Measurement::is_pareto_optimal},
+                                                Field{"note", &Measurement::note},
+                                                maybe("expected_error", &Measurement::expected)};
 
 template <>
 constexpr auto fields<Curve> = std::tuple{
-    Field{"method", &Curve::method}, Field{"points", &Curve::points},
-    OptionalField{"order", &Curve::order}, OptionalField{"expected_order", &Curve::expected_order},
-    OptionalField{"breaks_at", &Curve::breaks_at}};
+    Field{"method", &Curve::method}, Field{"points", &Curve::points}, maybe("order", &Curve::order),
+    maybe("expected_order", &Curve::expected_order), maybe("breaks_at", &Curve::breaks_at)};
 
 template <>
 constexpr auto fields<Chart> =
     std::tuple{Field{"id", &Chart::id},           Field{"title", &Chart::title},
                Field{"x_label", &Chart::x_label}, Field{"y_label", &Chart::y_label},
-               Field{"x_log", &Chart::is_x_log},  OptionalField{"bound", &Chart::bound},
+               Field{"x_log", &Chart::is_x_log},  maybe("bound", &Chart::bound),
                Field{"curves", &Chart::curves}};
 
 template <>
@@ -129,11 +117,11 @@ constexpr auto fields<Experiment> =
                Field{"items", &Experiment::items},
                Field{"command", &Experiment::command},
                Field{"finding", &Experiment::finding},
-               OptionalField{"input_findings", &Experiment::input_findings},
+               maybe("input_findings", &Experiment::input_findings),
                Field{"measurements", &Experiment::measurements},
                Field{"charts", &Experiment::charts},
-               OptionalField{"reference_error", &Experiment::reference_error},
-               OptionalField{"reference_error_upper", &Experiment::reference_error_upper},
+               maybe("reference_error", &Experiment::reference_error),
+               maybe("reference_error_upper", &Experiment::reference_error_upper),
                Field{"heat_maps", &Experiment::heat_maps},
                Field{"pictures", &Experiment::pictures}};
 

@@ -3,7 +3,7 @@
 /// A report as one HTML page with all numbers, plots, pictures, style and script, which loads
 /// nothing; and the table of an experiment's methods, which is the same on the page, in documents
 /// and on a terminal. The script (page/page.js) only adds filters and sorting.
-/// Tests: tests/tools/accuracy_page/report_html_test.cpp, and report_page_test.py in a browser.
+/// Tests: tests/tools/accuracy_page/report_page_test.cpp, and report_page_test.py in a browser.
 #pragma once
 
 #include <filesystem>

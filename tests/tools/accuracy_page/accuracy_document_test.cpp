@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checks the errors in docs/accuracy.md against the stored figures of the experiments. Shading is
 // excluded, because its errors depend on the driver.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
