@@ -1,7 +1,7 @@
 # The toolchain of the preset `windows`: MinGW-w64 on Debian (g++-mingw-w64-x86-64-posix), whose programs need no other
 # DLL than those of Windows.
 #
-# Debian has no libraries for MinGW, but GLM, fmt, Eigen and nlohmann-json are headers. Their headers and CMake files are linked into a
+# Debian has no libraries for MinGW, but GLM, fmt and nlohmann-json are headers. Their headers and CMake files are linked into a
 # folder of the build tree, because /usr/include has headers of Linux, too.
 set(CMAKE_SYSTEM_NAME Windows)
 set(CMAKE_SYSTEM_PROCESSOR x86_64)
@@ -13,7 +13,7 @@ set(CMAKE_EXE_LINKER_FLAGS_INIT -static)
 get_property(in_try_compile GLOBAL PROPERTY IN_TRY_COMPILE)
 if(NOT in_try_compile)
     set(packages ${CMAKE_BINARY_DIR}/packages)
-    foreach(headers glm fmt eigen3 nlohmann)
+    foreach(headers glm fmt nlohmann)
         if(NOT EXISTS /usr/include/${headers})
             message(FATAL_ERROR "/usr/include/${headers} is missing: see scripts/dev/install-dependencies")
         endif()
@@ -21,7 +21,6 @@ if(NOT in_try_compile)
         file(CREATE_LINK /usr/include/${headers} ${packages}/include/${headers} SYMBOLIC)
     endforeach()
     file(COPY /usr/share/cmake/glm DESTINATION ${packages}/share/cmake)
-    file(COPY /usr/share/eigen3/cmake DESTINATION ${packages}/share/eigen3)
     # Without fmt-targets-none.cmake, which names the library of Linux. Its headers are four folders up.
     file(GLOB fmt /usr/lib/*/cmake/fmt/fmt-config*.cmake /usr/lib/*/cmake/fmt/fmt-targets.cmake)
     file(COPY ${fmt} DESTINATION ${packages}/fmt/lib/cmake/fmt)

@@ -110,6 +110,10 @@ class ChartFlattener {
 
     /// \return a face with a problem, as an index of the chart
     std::optional<std::uint32_t> try_flatten(FlatChart& chart) const {
+        if (is_pair(chart.mesh)) {
+            chart.coordinates = unfolded(surface_, chart.mesh);
+            return problem_of(chart.mesh, chart.coordinates, limits_.max_stretch);
+        }
         std::vector<glm::dvec2> projection = projected(surface_, chart.mesh);
         if (chart.mesh.faces.size() == 1 ||
             problem_of(chart.mesh, projection, isometric_stretch) == std::nullopt) {

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "atlas/flatten.h"
 
-// Without vector instructions of its own, so that results do not depend on the instruction set.
-#define EIGEN_DONT_VECTORIZE
-#define EIGEN_DONT_PARALLELIZE
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "atlas/sparse_factor.h"
 #include "geometry/direction.h"
 #include "portable_math.h"
 #include "progress_stage.h"
@@ -76,84 +73,26 @@ std::array<glm::dvec3, 2> axes_of(const glm::dvec3& normal) {
     return {x, glm::cross(normal, x)};
 }
 
-/// A symmetric matrix with positive eigenvalues, which is factored once.
-class FactoredMatrix {
-  public:
-    /// \param entries  of the lower half with the diagonal; equal places add up
-    FactoredMatrix(std::vector<Eigen::Triplet<double>> entries, std::size_t size) : work_(size) {
-        const auto count = static_cast<Eigen::Index>(size);
-        Matrix matrix(count, count);
-        matrix.setFromTriplets(entries.begin(), entries.end());
-        entries = {};
-        check_cancelled();
-        solver_.compute(matrix);
-    }
-    [[nodiscard]] bool is_valid() const { return solver_.info() == Eigen::Success; }
-
-    /// Replaces the right side by the solution, for two of them at once: reading the factor costs
-    /// most.
-    void solve(std::span<glm::dvec2> values) {
-        const auto& order = solver_.permutationP().indices();
-        for (std::size_t i = 0; i < values.size(); ++i)
-            work_[position(order, i)] = values[i];
-        solve_permuted();
-        for (std::size_t i = 0; i < values.size(); ++i)
-            values[i] = work_[position(order, i)];
-    }
-
-  private:
-    using Matrix = Eigen::SparseMatrix<double>;
-
-    template <typename Order>
-    static std::size_t position(const Order& order, std::size_t i) {
-        return static_cast<std::size_t>(order(static_cast<Eigen::Index>(i)));
-    }
-    /// Solves L D L^T x = b, in which the diagonal of L is 1.
-    void solve_permuted() {
-        using Entry = Matrix::InnerIterator;
-        const Matrix& lower = solver_.matrixL().nestedExpression();
-        const Eigen::Index count = lower.cols();
-        for (Eigen::Index column = 0; column < count; ++column) {
-            const glm::dvec2 value = work_[static_cast<std::size_t>(column)];
-            for (Entry entry(lower, column); entry; ++entry)
-                work_[static_cast<std::size_t>(entry.row())] -= entry.value() * value;
-        }
-        const Eigen::VectorXd diagonal = solver_.vectorD();
-        for (Eigen::Index column = count - 1; column >= 0; --column) {
-            glm::dvec2 value = work_[static_cast<std::size_t>(column)] / diagonal(column);
-            for (Entry entry(lower, column); entry; ++entry)
-                value -= entry.value() * work_[static_cast<std::size_t>(entry.row())];
-            work_[static_cast<std::size_t>(column)] = value;
-        }
-    }
-
-    Eigen::SimplicialLDLT<Matrix> solver_;
-    std::vector<glm::dvec2> work_;
-};
-
 /// Builds the matrix of sum w (x_a - x_b)^2 over the edges of triangles.
 class EdgeMatrix {
   public:
     EdgeMatrix(std::size_t size, std::size_t edges) : diagonal_(size, 0.0) {
-        entries_.reserve(edges + size);
+        entries_.reserve(edges);
     }
     void add_edge(std::uint32_t a, std::uint32_t b, double weight) {
-        entries_.emplace_back(static_cast<int>(std::max(a, b)), static_cast<int>(std::min(a, b)),
-                              -weight);
+        entries_.push_back({a, b, -weight});
         add(a, weight);
         add(b, weight);
     }
     void add(std::uint32_t i, double weight) { diagonal_[i] += weight; }
 
-    /// Factors the matrix; the builder is empty afterwards.
-    FactoredMatrix factored() {
-        for (std::size_t i = 0; i < diagonal_.size(); ++i)
-            entries_.emplace_back(static_cast<int>(i), static_cast<int>(i), diagonal_[i]);
-        return {std::move(entries_), diagonal_.size()};
+    /// \param positions  of the unknowns
+    [[nodiscard]] SparseFactor factored(std::span<const glm::dvec3> positions) const {
+        return {diagonal_, entries_, positions};
     }
 
   private:
-    std::vector<Eigen::Triplet<double>> entries_;
+    std::vector<SparseFactor::Entry> entries_;
     std::vector<double> diagonal_;
 };
 
@@ -257,7 +196,12 @@ std::optional<std::vector<double>> conformal_scales(const AtlasSurface& surface,
             if (apex != fixed) logarithm[apex].x += portable::atan2(1.0, cotangents[k]);
         }
     }
-    FactoredMatrix factored = matrix.factored();
+    // The unknown of a hole is at one of its vertices.
+    std::vector<glm::dvec3> positions(count);
+    for (std::size_t v = 0; v < chart.positions.size(); ++v)
+        if (unknowns.of_vertex[v] != fixed)
+            positions[unknowns.of_vertex[v]] = surface.positions[chart.positions[v]];
+    SparseFactor factored = matrix.factored(positions);
     if (!factored.is_valid()) return std::nullopt;
     factored.solve(logarithm);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -297,32 +241,43 @@ void restore_area(const AtlasSurface& surface, const ChartMesh& chart,
 class RigidTriangles {
   public:
     RigidTriangles(const ChartMesh& chart, std::vector<FlatTriangle> triangles)
-        : chart_(chart), triangles_(std::move(triangles)), weights_(triangles_.size()) {
-        for (std::size_t i = 0; i < triangles_.size(); ++i)
-            weights_[i] = limited(cotangents_of(triangles_[i]));
+        : chart_(chart), weights_(triangles.size()), edges_(triangles.size()) {
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            weights_[i] = limited(cotangents_of(triangles[i]));
+            const std::array<glm::dvec2, 3> x = triangles[i].corners();
+            for (std::size_t k = 0; k < 3; ++k)
+                edges_[i][k] = weights_[i][k] * (x[k] - x[(k + 1) % 3]);
+        }
     }
 
-    [[nodiscard]] FactoredMatrix factored() const {
-        EdgeMatrix matrix(chart_.positions.size(), 3 * triangles_.size());
-        for (std::size_t i = 0; i < triangles_.size(); ++i)
-            for (std::size_t k = 0; k < 3; ++k)
-                matrix.add_edge(vertex(i, k), vertex(i, k + 1), weights_[i][k]);
+    /// \param positions  of the vertices
+    [[nodiscard]] SparseFactor factored(std::span<const glm::dvec3> positions) const {
+        EdgeMatrix matrix(chart_.positions.size(), 2 * weights_.size());
+        for (std::uint32_t i = 0; i < weights_.size(); ++i) {
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                const Corner other = chart_.opposite[3 * i + k];
+                if (other == no_corner)
+                    matrix.add_edge(vertex(i, k), vertex(i, k + 1), weights_[i][k]);
+                else if (3 * i + k < other)
+                    matrix.add_edge(vertex(i, k), vertex(i, k + 1),
+                                    weights_[i][k] + weights_[other / 3][other % 3]);
+            }
+        }
         matrix.add(0, 1.0);  // Attracts one vertex to the origin, which fixes the translation.
-        return matrix.factored();
+        return matrix.factored(positions);
     }
 
     /// Rotates a triangle to its present coordinates, and calls visit(a, b, weight, edge) for its
     /// edges: `edge` is where a should be, seen from b.
     template <typename Visit>
     void fit(std::size_t i, std::span<const glm::dvec2> coordinates, const Visit& visit) const {
-        const std::array<glm::dvec2, 3> x = triangles_[i].corners();
         double cosine = 0.0;
         double sine = 0.0;
         for (std::size_t k = 0; k < 3; ++k) {
             const glm::dvec2 u = coordinates[vertex(i, k)] - coordinates[vertex(i, k + 1)];
-            const glm::dvec2 e = x[k] - x[(k + 1) % 3];
-            cosine += weights_[i][k] * (u.x * e.x + u.y * e.y);
-            sine += weights_[i][k] * (u.y * e.x - u.x * e.y);
+            const glm::dvec2& e = edges_[i][k];
+            cosine += u.x * e.x + u.y * e.y;
+            sine += u.y * e.x - u.x * e.y;
         }
         const double length = std::sqrt(cosine * cosine + sine * sine);
         if (!(length > 0.0)) {
@@ -333,7 +288,7 @@ class RigidTriangles {
             sine /= length;
         }
         for (std::size_t k = 0; k < 3; ++k) {
-            const glm::dvec2 e = weights_[i][k] * (x[k] - x[(k + 1) % 3]);
+            const glm::dvec2& e = edges_[i][k];
             visit(vertex(i, k), vertex(i, k + 1), weights_[i][k],
                   glm::dvec2(cosine * e.x - sine * e.y, sine * e.x + cosine * e.y));
         }
@@ -341,12 +296,12 @@ class RigidTriangles {
     [[nodiscard]] std::uint32_t vertex(std::size_t triangle, std::size_t corner) const {
         return chart_.vertices[triangle][static_cast<glm::length_t>(corner % 3)];
     }
-    [[nodiscard]] std::size_t count() const { return triangles_.size(); }
+    [[nodiscard]] std::size_t count() const { return weights_.size(); }
 
   private:
     const ChartMesh& chart_;
-    std::vector<FlatTriangle> triangles_;
-    std::vector<Cotangents> weights_;
+    std::vector<Cotangents> weights_;               ///< Of the edges.
+    std::vector<std::array<glm::dvec2, 3>> edges_;  ///< With these weights, at rest.
 };
 
 /// Moves the vertices near triangles that exceed the stretch limit, which gain weight until they
@@ -480,6 +435,7 @@ ChartMesh chart_mesh(const AtlasSurface& surface, const ChartMembers& members,
     }
     constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
     std::vector<std::uint32_t> vertex(edge_count, none);
+    chart.positions.reserve(std::min(edge_count, chart.faces.size() / 2 + 16));
     for (Corner corner = 0; corner < edge_count; ++corner) {
         if (vertex[corner] != none) continue;
         const auto number = static_cast<std::uint32_t>(chart.positions.size());
@@ -501,6 +457,33 @@ ChartMesh chart_mesh(const AtlasSurface& surface, const ChartMembers& members,
     for (std::size_t i = 0; i < chart.faces.size(); ++i)
         chart.vertices[i] = {vertex[3 * i], vertex[3 * i + 1], vertex[3 * i + 2]};
     return chart;
+}
+
+std::vector<glm::dvec2> unfolded(const AtlasSurface& surface, const ChartMesh& chart) {
+    std::uint32_t edge = 0;
+    while (chart.opposite[edge] == no_corner)
+        ++edge;
+    std::vector<glm::dvec2> result(4);
+    const auto place = [&](std::uint32_t corner, const glm::dvec2& point) {
+        result[chart.vertices[corner / 3][static_cast<glm::length_t>(corner % 3)]] = point;
+    };
+    // Each triangle with its third corner, seen from the common edge on the x axis.
+    const auto third = [&](std::uint32_t corner) {
+        const Corner first = 3 * chart.faces[corner / 3] + corner % 3;
+        const glm::dvec3 from = surface.position(first);
+        const glm::dvec3 along = surface.position(next_in_triangle(first)) - from;
+        const glm::dvec3 side = surface.position(previous_in_triangle(first)) - from;
+        const double length = std::sqrt(glm::dot(along, along));
+        return glm::dvec2(glm::dot(along, side), 2.0 * surface.areas[chart.faces[corner / 3]]) /
+               length;
+    };
+    const double length = surface.edge_length(3 * chart.faces[edge / 3] + edge % 3);
+    place(edge, {0.0, 0.0});
+    place(next_in_triangle(edge), {length, 0.0});
+    place(previous_in_triangle(edge), third(edge));
+    const std::uint32_t other = chart.opposite[edge];
+    place(previous_in_triangle(other), glm::dvec2(length, 0.0) - third(other));
+    return result;
 }
 
 std::vector<glm::dvec2> projected(const AtlasSurface& surface, const ChartMesh& chart) {
@@ -530,7 +513,10 @@ std::vector<glm::dvec2> flattened(const AtlasSurface& surface, const ChartMesh& 
             shapes[i] = shapes[i].scaled((*scales)[i]);
     }
     const RigidTriangles triangles(chart, std::move(shapes));
-    FactoredMatrix factored = triangles.factored();
+    std::vector<glm::dvec3> positions(chart.positions.size());
+    for (std::size_t v = 0; v < positions.size(); ++v)
+        positions[v] = surface.positions[chart.positions[v]];
+    SparseFactor factored = triangles.factored(positions);
     if (!factored.is_valid()) return start;
     std::vector<glm::dvec2> right(chart.positions.size());
     std::vector<glm::dvec2> result = std::move(start);

@@ -69,6 +69,14 @@ class ChartMembers {
 ChartMesh chart_mesh(const AtlasSurface& surface, const ChartMembers& members,
                      std::vector<std::uint32_t> faces);
 
+/// True if a chart is two triangles with one common edge.
+inline bool is_pair(const ChartMesh& chart) {
+    return chart.faces.size() == 2 && chart.positions.size() == 4;
+}
+
+/// Unfolds such a chart without any stretch.
+std::vector<glm::dvec2> unfolded(const AtlasSurface& surface, const ChartMesh& chart);
+
 /// Projects a chart along the mean of its normals.
 std::vector<glm::dvec2> projected(const AtlasSurface& surface, const ChartMesh& chart);
 

@@ -174,7 +174,8 @@ std::optional<std::uint32_t> overlap_in(const ChartMesh& chart,
         const glm::uvec3& v = chart.vertices[i];
         if (orientation(points[v.x], points[v.y], points[v.z]) <= 0) return i;
     }
-    if (chart.faces.size() == 1) return std::nullopt;
+    // Two positive triangles with a common edge are on different sides of it.
+    if (chart.faces.size() == 1 || is_pair(chart)) return std::nullopt;
     const std::vector<BorderEdge> border = border_of(chart);
     if (border.empty()) return 0;  // A closed surface.
     const EdgeGrid grid(border, points);
