@@ -67,8 +67,7 @@ std::optional<int> CellMap::free_column(const CellMask& mask, const Level& level
                                         int count) {
     for (int row = 0; row < mask.height; ++row) {
         const Run& free = level.longest_free[static_cast<std::size_t>(y + row)];
-        if (free.end - free.begin < mask.longest[static_cast<std::size_t>(row)])
-            return std::nullopt;
+        if (free.end - free.begin < mask.longest(row)) return std::nullopt;
     }
     const std::size_t words = word_count(count);
     // Positions beyond the last one are blocked.
@@ -125,10 +124,11 @@ CellMap::Position CellMap::slid(const CellMask& mask, std::span<const RowRun> lo
                                 Position at) const {
     const Level& level = levels_.front();
     const auto can_move_down = [&] {
-        return at.y > 0 && std::none_of(lower.begin(), lower.end(), [&](const RowRun& run) {
-                   return meets_run(level.row(0, at.y - 1 + run.y), at.x + run.begin,
-                                    at.x + run.end);
-               });
+        if (at.y == 0) return false;
+        if (lower.empty()) return is_free(mask, {at.x, at.y - 1});
+        return std::none_of(lower.begin(), lower.end(), [&](const RowRun& run) {
+            return meets_run(level.row(0, at.y - 1 + run.y), at.x + run.begin, at.x + run.end);
+        });
     };
     const auto can_move_left = [&] {
         if (at.x == 0) return false;

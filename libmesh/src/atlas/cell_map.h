@@ -34,7 +34,7 @@ class CellMap {
                                  int end);
 
     /// Moves a mask down and left until neither is possible.
-    /// \param lower  lower_border(mask)
+    /// \param lower  lower_border(mask), or empty: the whole mask is tested
     [[nodiscard]] Position slid(const CellMask& mask, std::span<const RowRun> lower,
                                 Position at) const;
 

@@ -2,6 +2,7 @@
 #include "atlas/cell_mask.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -12,17 +13,17 @@ namespace {
 /// Rows of bits in which a chart is drawn.
 class Canvas {
   public:
-    Canvas(int width, int height)
-        : width_(width),
-          height_(height),
-          words_(word_count(width)),
-          bits_(words_ * static_cast<std::size_t>(height), 0) {}
+    Canvas(int width, int height) : width_(width), height_(height), words_(word_count(width)) {
+        const std::size_t count = words_ * static_cast<std::size_t>(height);
+        if (count > few_.size()) many_.resize(count, 0);
+        bits_ = count > few_.size() ? many_.data() : few_.data();
+    }
+    Canvas(const Canvas&) = delete;
+    Canvas& operator=(const Canvas&) = delete;
 
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] int height() const { return height_; }
-    [[nodiscard]] BitWord* row(int y) {
-        return bits_.data() + words_ * static_cast<std::size_t>(y);
-    }
+    [[nodiscard]] BitWord* row(int y) { return bits_ + words_ * static_cast<std::size_t>(y); }
 
     /// Inverts all cells of a row from `x` on.
     void invert_from(int x, int y) {
@@ -38,20 +39,20 @@ class Canvas {
         CellMask mask;
         mask.width = width_;
         mask.height = height_;
-        mask.first.reserve(static_cast<std::size_t>(height_) + 1);
+        mask.runs.reserve(static_cast<std::size_t>(height_));
+        mask.rows.resize(static_cast<std::size_t>(height_) + 1);
         for (int y = 0; y < height_; ++y) {
-            mask.first.push_back(static_cast<std::uint32_t>(mask.runs.size()));
-            const BitWord* const words = bits_.data() + words_ * static_cast<std::size_t>(y);
-            int longest = 0;
+            CellMask::Row& row = mask.rows[static_cast<std::size_t>(y)];
+            row.first = static_cast<std::uint32_t>(mask.runs.size());
+            const BitWord* const words = bits_ + words_ * static_cast<std::size_t>(y);
             for (int x = next_bit(words, 0, width_, true); x < width_;) {
                 const int end = next_bit(words, x, width_, false);
                 mask.runs.push_back({x, end});
-                longest = std::max(longest, end - x);
+                row.longest = std::max(row.longest, end - x);
                 x = next_bit(words, end, width_, true);
             }
-            mask.longest.push_back(longest);
         }
-        mask.first.push_back(static_cast<std::uint32_t>(mask.runs.size()));
+        mask.rows.back().first = static_cast<std::uint32_t>(mask.runs.size());
         return mask;
     }
 
@@ -59,7 +60,9 @@ class Canvas {
     int width_;
     int height_;
     std::size_t words_;
-    std::vector<BitWord> bits_;
+    BitWord* bits_;
+    std::array<BitWord, 64> few_{};  ///< Small charts come by the thousands.
+    std::vector<BitWord> many_;
 };
 
 /// Sets the cells that are within the margin of an edge.
@@ -128,16 +131,17 @@ int next_bit(const BitWord* words, int x, int width, bool is_set) {
 }
 
 CellMask mask_of(std::span<const BorderSegment> border, const glm::dvec2& size, double margin,
-                 int cell) {
+                 int cell, double scale) {
     const auto cells = [&](double length) {
-        return std::max(static_cast<int>(std::ceil((length + 2.0 * margin) / cell - 1e-6)), 1);
+        return std::max(static_cast<int>(std::ceil((length * scale + 2.0 * margin) / cell - 1e-6)),
+                        1);
     };
     Canvas canvas(cells(size.x), cells(size.y));
     const glm::dvec2 shift(margin);
     for (const auto& [a, b] : border)
-        invert_beyond(a + shift, b + shift, cell, canvas);
+        invert_beyond(a * scale + shift, b * scale + shift, cell, canvas);
     for (const auto& [a, b] : border)
-        draw_edge(a + shift, b + shift, margin, cell, canvas);
+        draw_edge(a * scale + shift, b * scale + shift, margin, cell, canvas);
     return canvas.mask();
 }
 
@@ -146,13 +150,16 @@ CellMask half_turned(const CellMask& mask) {
     result.width = mask.width;
     result.height = mask.height;
     result.runs.reserve(mask.runs.size());
-    result.first.reserve(mask.first.size());
     for (auto run = mask.runs.rbegin(); run != mask.runs.rend(); ++run)
         result.runs.push_back({mask.width - run->end, mask.width - run->begin});
-    result.longest.assign(mask.longest.rbegin(), mask.longest.rend());
     const auto count = static_cast<std::uint32_t>(mask.runs.size());
-    for (auto first = mask.first.rbegin(); first != mask.first.rend(); ++first)
-        result.first.push_back(count - *first);
+    result.rows.resize(mask.rows.size());
+    for (int y = 0; y < mask.height; ++y) {
+        const auto i = static_cast<std::size_t>(mask.height - y);
+        result.rows[i - 1] = {count - mask.rows[static_cast<std::size_t>(y) + 1].first,
+                              mask.longest(y)};
+    }
+    result.rows.back().first = count;
     return result;
 }
 
@@ -168,6 +175,7 @@ CellMask coarser(const CellMask& mask, int level) {
 
 std::vector<RowRun> lower_border(const CellMask& mask) {
     std::vector<RowRun> border;
+    border.reserve(mask.runs.size());
     for (int y = 0; y < mask.height; ++y) {
         const std::span<const Run> below = y > 0 ? mask.row(y - 1) : std::span<const Run>();
         auto covered = below.begin();

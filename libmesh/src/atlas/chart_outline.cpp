@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "atlas/chart_outline.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <limits>
 
 namespace relief::detail {
@@ -10,6 +12,8 @@ Outline outline_of(const FlatChart& chart, const glm::dvec2& direction) {
     outline.direction = direction;
     outline.low = glm::dvec2(std::numeric_limits<double>::infinity());
     glm::dvec2 high(-std::numeric_limits<double>::infinity());
+    outline.border.reserve(static_cast<std::size_t>(
+        std::count(chart.mesh.opposite.begin(), chart.mesh.opposite.end(), no_corner)));
     for (Corner corner = 0; corner < chart.mesh.opposite.size(); ++corner) {
         if (chart.mesh.opposite[corner] != no_corner) continue;
         const glm::uvec3& v = chart.mesh.vertices[corner / 3];
@@ -31,11 +35,7 @@ Outline outline_of(const FlatChart& chart, const glm::dvec2& direction) {
 }
 
 CellMask mask_of(const Outline& outline, double scale, double margin, int cell) {
-    std::vector<BorderSegment> border;
-    border.reserve(outline.border.size());
-    for (const auto& [a, b] : outline.border)
-        border.emplace_back(a * scale, b * scale);
-    return mask_of(border, outline.size * scale, margin, cell);
+    return mask_of(outline.border, outline.size, margin, cell, scale);
 }
 
 }  // namespace relief::detail

@@ -35,6 +35,9 @@ constexpr int hint_slack = 8;
 constexpr std::size_t max_freely_rotated = 64;
 /// Above this number of charts, the first attempt should succeed.
 constexpr std::size_t max_varied = 1000;
+/// More charts than those that are separated, up to this number, have half of the attempts on cells
+/// of half the size, which the rounding of their borders wastes less of.
+constexpr std::size_t max_refined = 500;
 /// From this number of charts on, a quarter of them estimates the scale in a quarter of the map,
 /// unless the longest chart exceeds this share of its height, or the quarter has fewer rows of
 /// cells.
@@ -77,8 +80,8 @@ struct Pose {
     glm::dvec2 direction{1.0, 0.0};
     glm::dvec2 offset{0.0};  ///< Of the chart's origin from the corner of the mask, texels.
     CellMask mask;
-    CellMask coarse;  ///< The mask on the cells of the search.
-    std::vector<RowRun> lower;
+    CellMask coarse;            ///< The mask on the cells of the search.
+    std::vector<RowRun> lower;  ///< Empty for small masks.
 };
 
 /// How to place charts: in which order, and by which preference among rotations.
@@ -93,15 +96,17 @@ struct Rule {
 /// Places charts at one scale.
 class Packer {
   public:
-    Packer(std::span<const FlatChart> charts, const PackingOptions& options)
+    /// \param cell  side of the smallest cells, texels
+    Packer(std::span<const FlatChart> charts, const PackingOptions& options, int cell)
         : options_(options),
-          cell_(cell_of(options)),
+          cell_(cell),
           outlines_(charts.size()),
           poses_(charts.size()),
           places_(charts.size()) {
         const double diagonal = std::sqrt(0.5);
         parallel_for(charts.size(), 16, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
+                outlines_[i].reserve(charts.size() > max_freely_rotated ? 2 : 4);
                 outlines_[i].push_back(outline_of(charts[i], {1.0, 0.0}));
                 outlines_[i].push_back(outline_of(charts[i], {0.0, 1.0}));
                 if (charts.size() > max_freely_rotated) continue;
@@ -111,10 +116,13 @@ class Packer {
         });
     }
 
-    void set_scale(double scale) {
-        parallel_for(outlines_.size(), 16, [&](std::size_t begin, std::size_t end) {
+    /// Prepares charts for pack() at a scale.
+    void set_scale(double scale, std::span<const std::uint32_t> charts) {
+        if (scale == scale_) return;
+        scale_ = charts.size() == outlines_.size() ? scale : 0.0;
+        parallel_for(charts.size(), 16, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                find_poses(i, scale);
+                find_poses(charts[i], scale);
         });
     }
 
@@ -155,6 +163,7 @@ class Packer {
         const double margin = margin_of(options_);
         std::vector<Pose>& poses = poses_[chart];
         poses.clear();
+        poses.reserve(2 * outlines_[chart].size());
         for (const Outline& outline : outlines_[chart]) {
             Pose& pose = poses.emplace_back();
             pose.direction = outline.direction;
@@ -177,13 +186,16 @@ class Packer {
             poses.push_back(std::move(turned));
         }
     }
+    /// Masks with so few rows, which may be many, slide without their lower border.
+    static constexpr int max_unbordered = 12;
     static void prepare(Pose& pose) {
         pose.coarse = coarser(pose.mask, search_level);
-        pose.lower = lower_border(pose.mask);
+        if (pose.mask.height > max_unbordered) pose.lower = lower_border(pose.mask);
     }
     static bool is_full(const CellMask& mask) {
-        return std::all_of(mask.longest.begin(), mask.longest.end(),
-                           [&](int length) { return length == mask.width; });
+        return mask.runs.size() == static_cast<std::size_t>(mask.height) &&
+               std::all_of(mask.runs.begin(), mask.runs.end(),
+                           [&](const Run& run) { return run.end - run.begin == mask.width; });
     }
 
     bool place(std::uint32_t chart, const Rule& rule, CellMap& map) {
@@ -221,6 +233,7 @@ class Packer {
 
     PackingOptions options_;
     int cell_;
+    double scale_ = 0.0;  ///< That all charts are prepared for, or 0.
     std::vector<std::vector<Outline>> outlines_;
     std::vector<std::vector<Pose>> poses_;
     std::vector<Place> places_;
@@ -231,10 +244,12 @@ class Packer {
 /// The area of charts with half of the padding, texels: a polynomial of the scale.
 class PaddedArea {
   public:
-    PaddedArea(std::span<const FlatChart> charts, const PackingOptions& options) {
+    PaddedArea(std::span<const FlatChart> charts, std::span<const std::uint32_t> members,
+               const PackingOptions& options) {
         // Cells at the border are covered in part.
         const double margin = margin_of(options) + 0.5 * cell_of(options);
-        for (const FlatChart& chart : charts) {
+        for (const std::uint32_t member : members) {
+            const FlatChart& chart = charts[member];
             square_ += chart.area;
             linear_ += 2.0 * (chart.size.x + chart.size.y) * margin;
             constant_ += 4.0 * margin * margin;
@@ -258,29 +273,41 @@ class PaddedArea {
 /// The rules of the first attempts, each with one of three orders.
 class Rules {
   public:
-    explicit Rules(std::span<const FlatChart> charts) {
-        sort(charts, [](const FlatChart& chart) { return std::max(chart.size.x, chart.size.y); });
-        sort(charts, [](const FlatChart& chart) { return chart.size.x + chart.size.y; });
-        sort(charts, [](const FlatChart& chart) { return chart.area; });
-    }
+    explicit Rules(std::span<const FlatChart> charts) : charts_(charts) {}
+
     static constexpr std::size_t count = 21;
-    [[nodiscard]] Rule rule(std::size_t index) const {
+    Rule rule(std::size_t index) {
         constexpr std::array<std::pair<double, double>, 7> weights{
             {{0.0, 0.0}, {1.0, 0.3}, {1.0, 1.0}, {0.0, 0.1}, {1.0, 0.0}, {0.0, 0.3}, {0.0, 1.0}}};
         const auto& [lower, left] = weights[index / 3 % weights.size()];
-        return {orders_[index % 3], lower, left};
+        return {order(index % 3), lower, left};
     }
 
   private:
-    template <typename Size>
-    void sort(std::span<const FlatChart> charts, const Size& size) {
-        std::vector<std::uint32_t>& order = orders_.emplace_back(charts.size());
-        std::iota(order.begin(), order.end(), 0U);
-        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return size(charts[a]) > size(charts[b]);
+    /// Most attempts to place many charts need one order only.
+    const std::vector<std::uint32_t>& order(std::size_t index) {
+        std::vector<std::uint32_t>& order = orders_[index];
+        if (!order.empty()) return order;
+        using Entry = std::pair<double, std::uint32_t>;
+        std::vector<Entry> sizes;
+        sizes.reserve(charts_.size());
+        for (std::uint32_t i = 0; i < charts_.size(); ++i) {
+            const FlatChart& chart = charts_[i];
+            sizes.emplace_back(index == 0   ? std::max(chart.size.x, chart.size.y)
+                               : index == 1 ? chart.size.x + chart.size.y
+                                            : chart.area,
+                               i);
+        }
+        std::sort(sizes.begin(), sizes.end(), [](const Entry& a, const Entry& b) {
+            return a.first != b.first ? a.first > b.first : a.second < b.second;
         });
+        order.reserve(sizes.size());
+        for (const Entry& each : sizes)
+            order.push_back(each.second);
+        return order;
     }
-    std::vector<std::vector<std::uint32_t>> orders_;
+    std::span<const FlatChart> charts_;
+    std::array<std::vector<std::uint32_t>, 3> orders_;
 };
 
 /// Finds the rule of the next attempt after one that failed.
@@ -288,7 +315,7 @@ class RuleSearch {
   public:
     explicit RuleSearch(std::span<const FlatChart> charts) : rules_(charts) {}
 
-    [[nodiscard]] Rule first() const { return rules_.rule(0); }
+    [[nodiscard]] Rule first() { return rules_.rule(0); }
 
     /// \param rule  of the last attempt. \param best  of the last one that succeeded
     /// \param failed  the index in the order of the chart that did not fit
@@ -339,45 +366,44 @@ double largest_scale(std::span<const FlatChart> charts, const glm::dvec2& size) 
     return scale;
 }
 
-/// Packs charts into a map that is too high.
+/// Packs the charts of a rule into a map of twice as many rows as they may need.
+/// \param area  of these charts. \param texels_of_row  of the map
 /// \return the share of the rows in use that charts and their padding cover; none if there is too
 ///         little room
-std::optional<double> covered_share(std::span<const FlatChart> charts,
-                                    const PackingOptions& options, double scale) {
-    Packer packer(charts, options);
-    packer.set_scale(scale);
-    const int rows = packer.rows();
-    if (packer.pack(Rules(charts).rule(0), 2 * rows)) return std::nullopt;
-    return PaddedArea(charts, options).at(scale) * rows /
-           (static_cast<double>(options.size.x) * options.size.y * packer.height());
+std::optional<double> covered_share(Packer& packer, const Rule& rule, double scale,
+                                    const PaddedArea& area, double texels_of_row, int rows) {
+    packer.set_scale(scale, rule.order);
+    if (packer.pack(rule, 2 * rows)) return std::nullopt;
+    return area.at(scale) / (texels_of_row * packer.height());
 }
 
 /// Returns charts of all sizes, each standing for `sample_share` ones.
-std::vector<FlatChart> sample_of(std::span<const FlatChart> charts) {
-    const std::vector<std::uint32_t> order = Rules(charts).rule(0).order;
-    std::vector<FlatChart> sample;
+std::vector<std::uint32_t> sample_of(std::span<const std::uint32_t> order) {
+    std::vector<std::uint32_t> sample;
     for (std::size_t i = sample_share / 2; i < order.size(); i += sample_share)
-        sample.push_back(charts[order[i]]);
+        sample.push_back(order[i]);
     return sample;
 }
 
 /// Estimates the scale at which charts fill the map.
 double estimated_scale(std::span<const FlatChart> charts, const PackingOptions& options,
-                       double largest) {
-    const PaddedArea area(charts, options);
+                       double largest, Packer& packer, Rule rule) {
+    const PaddedArea area(charts, rule.order, options);
     const double map_area = static_cast<double>(options.size.x) * options.size.y;
     const double first = std::min(area.scale_for(expected_use * map_area), largest);
     double longest = 0.0;
     for (const FlatChart& chart : charts)
         longest = std::max({longest, chart.size.x, chart.size.y});
-    std::optional<double> share;
-    PackingOptions part = options;
-    part.size.y /= static_cast<int>(sample_share);
-    if (charts.size() >= min_sampled && first * longest <= max_sampled_length * part.size.y &&
-        part.size.y >= min_sampled_rows * cell_of(options))
-        share = covered_share(sample_of(charts), part, first);
-    else
-        share = covered_share(charts, options, first);
+    int rows = packer.rows();
+    const int part = rows / static_cast<int>(sample_share);
+    if (charts.size() >= min_sampled && part >= min_sampled_rows &&
+        first * longest <= max_sampled_length * part * cell_of(options)) {
+        rule.order = sample_of(rule.order);
+        rows = part;
+    }
+    const std::optional<double> share =
+        covered_share(packer, rule, first, PaddedArea(charts, rule.order, options),
+                      map_area / packer.rows(), rows);
     if (!share) return 0.7 * first;
     const double estimate = area.scale_for(*share * map_area);
     return std::min(charts.size() > max_varied ? 0.985 * estimate : estimate, largest);
@@ -393,20 +419,33 @@ Packing packed(std::span<const FlatChart> charts, const PackingOptions& options)
         throw InvalidInput("the charts do not fit into the map at the requested density");
     const std::size_t attempts = attempts_for(charts.size(), options.texels_per_unit.has_value());
     ProgressStage stage("packing charts", attempts);
-    Packer packer(charts, options);
+    const int cell = cell_of(options);
+    Packer packer(charts, options, cell);
     RuleSearch search(charts);
     Packing packing;
-    double scale = options.texels_per_unit ? *options.texels_per_unit
-                                           : estimated_scale(charts, options, largest);
-    double step = scale_step;
     Rule rule = search.first();
+    const std::vector<std::uint32_t> all = rule.order;
+    double scale = options.texels_per_unit
+                       ? *options.texels_per_unit
+                       : estimated_scale(charts, options, largest, packer, rule);
+    double step = scale_step;
     Rule best = rule;
+    bool may_refine = !options.texels_per_unit && charts.size() > max_freely_rotated &&
+                      charts.size() <= max_refined && cell % (2 * options.alignment) == 0;
     int failures = 0;    // At this scale.
     int reductions = 0;  // Of the scale, before the first success.
     const int max_failures = static_cast<int>(std::clamp<std::size_t>(attempts / 3, 1, 21));
-    packer.set_scale(scale);
     for (std::size_t attempt = 1; attempt < attempts || packing.placements.empty(); ++attempt) {
         if (attempt < attempts) stage.advance(1);
+        if (attempt >= attempts - attempts / 2 && may_refine && !packing.placements.empty()) {
+            may_refine = false;
+            packer = Packer(charts, options, cell / 2);
+            rule = best;
+            step = scale_step;
+            scale = std::min(packing.texels_per_unit * (1.0 + step), largest);
+            failures = 0;
+        }
+        packer.set_scale(scale, all);
         const std::optional<std::size_t> failed = packer.pack(rule, packer.rows());
         if (!failed) {
             packing.texels_per_unit = scale;
@@ -423,7 +462,11 @@ Packing packed(std::span<const FlatChart> charts, const PackingOptions& options)
                 throw InvalidInput("the charts do not fit into the map at the requested density");
             if (!packing.placements.empty()) {
                 step *= 0.5;
-                if (step < min_scale_step) break;
+                if (step < min_scale_step) {
+                    if (!may_refine) break;
+                    attempt = std::max(attempt, attempts - attempts / 2 - 1);
+                    continue;
+                }
                 scale = packing.texels_per_unit * (1.0 + step);
             } else {
                 if (++reductions > max_reductions)
@@ -432,7 +475,6 @@ Packing packed(std::span<const FlatChart> charts, const PackingOptions& options)
             }
         }
         failures = 0;
-        packer.set_scale(scale);
     }
     if (!options.texels_per_unit && charts.size() <= max_freely_rotated)
         raise_by_separation(charts, {options, margin_of(options), cell_of(options), largest},
