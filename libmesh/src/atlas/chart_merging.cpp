@@ -27,8 +27,10 @@ constexpr double max_box_growth = 1.25;
 constexpr double max_union_energy = 1.02;
 constexpr double max_large_union_energy = 1.006;
 /// Noise stretches charts, however small they are. So small unions may have the energy that their
-/// charts have before anything is merged, up to this one.
+/// charts have before anything is merged, up to this one, and a little more: unions of noisy charts
+/// are almost never stretched less than their charts.
 constexpr double max_noise_energy = 1.05;
+constexpr double noise_rise = 0.05;
 /// Dust: charts below this number of texels, if all of them have a small share of the area. The
 /// energy of a union may grow as if this much more were spent on the dust alone.
 constexpr double dust_texels = 128.0;
@@ -176,6 +178,7 @@ class ChartMerger {
         if (is_large(pair)) return max_large_union_energy;
         const double area = charts_[pair.a].area + charts_[pair.b].area;
         double energy = mean_energy(pair);
+        energy += noise_rise * (energy - 1.0);
         if (is_dust(pair)) energy += dust_energy * charts_[smaller(pair)].area / area;
         return std::max(max_union_energy, energy);
     }
