@@ -323,9 +323,10 @@ void finish_samples(const BumpyBakes& bakes, Experiment& report) {
     add_renderings(*bakes.bake, std::span(maps).first(2), report);
 }
 
-PreparedExperiment by_samples(const std::shared_ptr<const BumpyBake>& bake, bool is_quick) {
+PreparedExperiment by_samples(const std::shared_ptr<const BumpyBake>& bake,
+                              const PlanOptions& options) {
     std::vector<BakeSampling> ways = {{1}, {4}, {16}};
-    if (!is_quick) ways.push_back({64});
+    if (!options.is_quick) ways.push_back({64});
     const BumpyBakes bakes(bake, ways, {{.bits = 8}, {.bits = 16}, {.bits = 32}});
     PreparedExperiment prepared = on_bakes(bakes);
     prepared.report.question = "How many rays does a texel need, and how many bits?";
@@ -360,8 +361,9 @@ void finish_thresholds(const BumpyBakes& bakes, Experiment& report) {
     add_error_maps(*bakes.bake, maps, 0.5, report);
 }
 
-PreparedExperiment by_threshold(const std::shared_ptr<const BumpyBake>& bake, bool is_quick) {
-    const int max_rays = is_quick ? 16 : 64;
+PreparedExperiment by_threshold(const std::shared_ptr<const BumpyBake>& bake,
+                                const PlanOptions& options) {
+    const int max_rays = options.is_quick ? 16 : 64;
     std::vector<BakeSampling> ways;
     for (const double degrees : thresholds_in_degrees)
         ways.push_back({max_rays, degrees});
@@ -379,14 +381,13 @@ PreparedExperiment by_threshold(const std::shared_ptr<const BumpyBake>& bake, bo
 }  // namespace
 
 std::vector<PlannedExperiment> bake_plan(const PlanOptions& options) {
-    const bool is_quick = options.is_quick;
-    const SharedInput<BumpyBake> bake([is_quick] {
+    const SharedInput<BumpyBake> bake([is_quick = options.is_quick] {
         return std::make_shared<const BumpyBake>(is_quick ? 120 : 200, is_quick ? 128 : 256);
     });
-    return {{"bake/samples", Subject::bake, "Baked normals: rays and bits",
-             [bake, is_quick] { return by_samples(bake.get(), is_quick); }},
-            {"bake/adaptive", Subject::bake, "Baked normals: rays where they are needed",
-             [bake, is_quick] { return by_threshold(bake.get(), is_quick); }}};
+    return {{"bake/samples", "Baked normals: rays and bits",
+             [bake](const PlanOptions& all) { return by_samples(bake.get(), all); }},
+            {"bake/adaptive", "Baked normals: rays where they are needed",
+             [bake](const PlanOptions& all) { return by_threshold(bake.get(), all); }}};
 }
 
 }  // namespace relief::accuracy::detail

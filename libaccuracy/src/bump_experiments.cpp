@@ -214,7 +214,7 @@ std::vector<BumpMethod> in_both_arithmetics(int bits, bool has_smoothed) {
     return methods;
 }
 
-PreparedExperiment on_wave(int bits, bool is_quick) {
+PreparedExperiment on_wave(int bits, const PlanOptions& options) {
     constexpr int side = 256 + 2 * wave_margin;
     constexpr double wavelength = 32.0;
     const auto wave = std::make_shared<const BumpField>(oblique_wave(side, wavelength, bits));
@@ -235,7 +235,7 @@ PreparedExperiment on_wave(int bits, bool is_quick) {
         one.error = [wave, method] { return wave_errors(*wave, method); };
         one.work = [wave, method] { normals_by(method, wave->heights, wave->options); };
     }
-    prepared.finish = [bits, is_quick](Experiment& report) {
+    prepared.finish = [bits, is_quick = options.is_quick](Experiment& report) {
         report.charts = {wavelength_chart(bits, side, is_quick)};
     };
     return prepared;
@@ -327,11 +327,12 @@ PreparedExperiment on_field(const FieldCase& one) {
     return prepared;
 }
 
-PreparedExperiment on_large_map(bool is_quick) {
-    PreparedExperiment prepared = on_recipe(field_recipe("smooth, 16 bit"), is_quick ? 512 : 2048);
+PreparedExperiment on_large_map(const PlanOptions& options) {
+    PreparedExperiment prepared =
+        on_recipe(field_recipe("smooth, 16 bit"), options.is_quick ? 512 : 2048);
     prepared.report.question =
         "How much time and memory does a large normal map cost, and how much do finer texels help?";
-    prepared.finish = [finding = prepared.finish, is_quick](Experiment& report) {
+    prepared.finish = [finding = prepared.finish, is_quick = options.is_quick](Experiment& report) {
         finding(report);
         report.charts = {resolution_chart(is_quick)};
     };
@@ -341,20 +342,18 @@ PreparedExperiment on_large_map(bool is_quick) {
 }  // namespace
 
 std::vector<PlannedExperiment> bump_plan(const PlanOptions& options) {
-    const bool is_quick = options.is_quick;
     std::vector<PlannedExperiment> plan;
     for (const int bits : {32, 16, 8}) {
         plan.push_back({fmt::format("bump/wave-{}", bits == 32 ? "float" : std::to_string(bits)),
-                        Subject::bump, fmt::format("Bump: a wave in {}", depth_name(bits)),
-                        [bits, is_quick] { return on_wave(bits, is_quick); }});
+                        fmt::format("Bump: a wave in {}", depth_name(bits)),
+                        [bits](const PlanOptions& all) { return on_wave(bits, all); }});
     }
     for (const FieldCase& one : field_cases) {
-        if (is_quick && !one.is_quick) continue;
-        plan.push_back({fmt::format("bump/{}", one.id), Subject::bump,
-                        fmt::format("Bump: {}", one.recipe), [one] { return on_field(one); }});
+        if (options.is_quick && !one.is_quick) continue;
+        plan.push_back({fmt::format("bump/{}", one.id), fmt::format("Bump: {}", one.recipe),
+                        [one](const PlanOptions&) { return on_field(one); }});
     }
-    plan.push_back({"bump/large", Subject::bump, "Bump: a large map",
-                    [is_quick] { return on_large_map(is_quick); }});
+    plan.push_back({"bump/large", "Bump: a large map", on_large_map});
     return plan;
 }
 

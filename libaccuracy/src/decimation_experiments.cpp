@@ -194,18 +194,19 @@ PreparedExperiment decimation_of(AnalyticSurface surface, int cells, DecimationE
     return prepared;
 }
 
-PreparedExperiment decimation_case(AnalyticSurface surface, DecimationError kind, bool is_quick) {
-    const int cells = is_quick ? 64 : 256;
+PreparedExperiment decimation_case(AnalyticSurface surface, DecimationError kind,
+                                   const PlanOptions& options) {
+    const int cells = options.is_quick ? 64 : 256;
     PreparedExperiment prepared = decimation_of(surface, cells, kind);
-    prepared.finish = [surface, cells, kind, is_quick](Experiment& report) {
+    prepared.finish = [surface, cells, kind, is_quick = options.is_quick](Experiment& report) {
         report.charts = {triangles_chart(DecimationInput(surface, cells), kind, is_quick)};
     };
     return prepared;
 }
 
-PreparedExperiment decimation_of_large_mesh(bool is_quick) {
-    PreparedExperiment prepared =
-        decimation_of(AnalyticSurface::torus, is_quick ? 128 : 707, DecimationError::distance);
+PreparedExperiment decimation_of_large_mesh(const PlanOptions& options) {
+    PreparedExperiment prepared = decimation_of(
+        AnalyticSurface::torus, options.is_quick ? 128 : 707, DecimationError::distance);
     prepared.report.question = "How much time and memory does the decimation of a large mesh cost?";
     prepared.costs.memory = true;
     // Two options are enough to see what attributes cost.
@@ -219,22 +220,20 @@ PreparedExperiment decimation_of_large_mesh(bool is_quick) {
 
 std::vector<PlannedExperiment> decimation_plan(const PlanOptions& options) {
     using enum AnalyticSurface;
-    const bool is_quick = options.is_quick;
     const std::vector<AnalyticSurface> surfaces =
-        is_quick ? std::vector{torus, ellipsoid}
-                 : std::vector<AnalyticSurface>(all_surfaces.begin(), all_surfaces.end());
+        options.is_quick ? std::vector{torus, ellipsoid}
+                         : std::vector<AnalyticSurface>(all_surfaces.begin(), all_surfaces.end());
     std::vector<PlannedExperiment> plan;
     for (const AnalyticSurface surface : surfaces) {
         for (const DecimationError kind : {DecimationError::distance, DecimationError::angle}) {
             const char* name = kind == DecimationError::angle ? "angle" : "distance";
-            plan.push_back({fmt::format("decimation/{}-{}", name_of(surface), name),
-                            Subject::decimation,
-                            fmt::format("Decimation: {}, {}", name_of(surface), name),
-                            [=] { return decimation_case(surface, kind, is_quick); }});
+            plan.push_back(
+                {fmt::format("decimation/{}-{}", name_of(surface), name),
+                 fmt::format("Decimation: {}, {}", name_of(surface), name),
+                 [=](const PlanOptions& all) { return decimation_case(surface, kind, all); }});
         }
     }
-    plan.push_back({"decimation/large", Subject::decimation, "Decimation: a large mesh",
-                    [is_quick] { return decimation_of_large_mesh(is_quick); }});
+    plan.push_back({"decimation/large", "Decimation: a large mesh", decimation_of_large_mesh});
     return plan;
 }
 

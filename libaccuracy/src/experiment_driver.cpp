@@ -117,7 +117,8 @@ std::size_t share_of(std::size_t rounds, std::size_t pass, std::size_t passes) {
 }  // namespace
 
 std::vector<Experiment> detail::run_planned(std::vector<PlannedExperiment> plan,
-                                            const RunOptions& options) {
+                                            const RunOptions& options,
+                                            const PlanOptions& plan_options) {
     if (options.selects_experiment) {
         std::erase_if(plan, [&](const PlannedExperiment& planned) {
             return !options.selects_experiment(planned.id);
@@ -132,7 +133,7 @@ std::vector<Experiment> detail::run_planned(std::vector<PlannedExperiment> plan,
         for (std::size_t i = 0; i < plan.size(); ++i) {
             if (options.tell) options.tell({plan[i].title, pass, i, plan.size()});
             if (pass == 0) {
-                prepared[i] = plan[i].prepare();
+                prepared[i] = plan[i].prepare(plan_options);
                 prepared[i].report.id = plan[i].id;
                 prepared[i].report.subject = plan[i].subject;
                 prepared[i].report.title = plan[i].title;
@@ -290,10 +291,12 @@ std::vector<Experiment> run_experiments(std::span<const Subject> subjects,
         options.is_quick, SharedInput<GlDevice>([] { return std::make_shared<const GlDevice>(); })};
     std::vector<PlannedExperiment> plan;
     for (const Subject subject : subjects) {
-        for (PlannedExperiment& planned : entry_of(subject).plan(plan_options))
+        for (PlannedExperiment& planned : entry_of(subject).plan(plan_options)) {
+            planned.subject = subject;
             plan.push_back(std::move(planned));
+        }
     }
-    return run_planned(std::move(plan), options);
+    return run_planned(std::move(plan), options, plan_options);
 }
 
 std::size_t detail::repeats_per_round(const std::function<void()>& work) {

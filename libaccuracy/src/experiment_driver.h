@@ -108,27 +108,11 @@ struct PreparedExperiment {
     std::function<void(Experiment& report)> finish{};
 };
 
-/// An experiment that can be run.
-struct PlannedExperiment {
-    std::string id{};  ///< Experiment::id
-    Subject subject = Subject::normals;
-    std::string title{};
-    /// Makes the input and lists the methods. Called once, and not at all if the experiment is
-    /// left out.
-    std::function<PreparedExperiment()> prepare{};
-};
-
-/// Runs experiments in passes. run_experiments() has the details.
-std::vector<Experiment> run_planned(std::vector<PlannedExperiment> plan, const RunOptions& options);
-
-/// Measures one experiment in one pass, and marks the Pareto-optimal methods.
-Experiment measured(PreparedExperiment prepared, const RunOptions& options);
-
 /// A value that several experiments share. The first of them makes it.
 template <typename Value>
 class SharedInput {
   public:
-    explicit SharedInput(std::function<std::shared_ptr<const Value>()> make)
+    explicit SharedInput(std::function<std::shared_ptr<const Value>()> make = {})
         : state_(std::make_shared<State>(State{std::move(make), nullptr})) {}
 
     [[nodiscard]] std::shared_ptr<const Value> get() const {
@@ -147,8 +131,25 @@ class SharedInput {
 /// Options of the experiments of a plan.
 struct PlanOptions {
     bool is_quick = false;
-    SharedInput<GlDevice> device;
+    SharedInput<GlDevice> device{};
 };
+
+/// An experiment that can be run.
+struct PlannedExperiment {
+    std::string id{};  ///< Experiment::id
+    std::string title{};
+    /// Makes the input and lists the methods. Called once, and not at all if the experiment is
+    /// left out.
+    std::function<PreparedExperiment(const PlanOptions&)> prepare{};
+    Subject subject = Subject::normals;  ///< Set by run_experiments().
+};
+
+/// Runs experiments in passes. run_experiments() has the details.
+std::vector<Experiment> run_planned(std::vector<PlannedExperiment> plan, const RunOptions& options,
+                                    const PlanOptions& plan_options = {});
+
+/// Measures one experiment in one pass, and marks the Pareto-optimal methods.
+Experiment measured(PreparedExperiment prepared, const RunOptions& options);
 
 /// Surfaces with several triangulations, with charts over the cell size; a large mesh for time and
 /// memory; and the fans of [Max 1999].

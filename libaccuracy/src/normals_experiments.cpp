@@ -170,7 +170,7 @@ PreparedExperiment on_mesh(AnalyticMesh mesh, const std::string& input) {
     return prepared;
 }
 
-PreparedExperiment on_case(const Case& one, bool is_quick) {
+PreparedExperiment on_case(const Case& one, const PlanOptions& options) {
     PreparedExperiment prepared =
         on_mesh(analytic_mesh(one.surface, one.triangulation, cells_of_normal_tables, tables_seed),
                 fmt::format("{}, {} x {} cells", name_of(one), cells_of_normal_tables,
@@ -179,14 +179,14 @@ PreparedExperiment on_case(const Case& one, bool is_quick) {
         "Which weighting has the smallest error on this surface ({}), and what does it cost?",
         name_of(one));
     prepared.costs.memory = false;
-    prepared.finish = [one, is_quick](Experiment& report) {
+    prepared.finish = [one, is_quick = options.is_quick](Experiment& report) {
         report.charts = {cells_chart(one, is_quick)};
     };
     return prepared;
 }
 
-PreparedExperiment normals_on_large_mesh(bool is_quick) {
-    const int cells = is_quick ? 160 : 512;
+PreparedExperiment normals_on_large_mesh(const PlanOptions& options) {
+    const int cells = options.is_quick ? 160 : 512;
     PreparedExperiment prepared =
         on_mesh(analytic_mesh(AnalyticSurface::torus, Triangulation::jittered, cells, tables_seed),
                 fmt::format("torus, jittered, {} x {} cells", cells, cells));
@@ -213,8 +213,8 @@ Chart neighbors_chart(const Experiment& experiment, const std::vector<NormalMeth
         });
 }
 
-PreparedExperiment on_fans(bool is_quick) {
-    const std::uint32_t fans = is_quick ? 2000 : 20000;
+PreparedExperiment on_fans(const PlanOptions& options) {
+    const std::uint32_t fans = options.is_quick ? 2000 : 20000;
     const std::vector<NormalMethod> methods = normal_methods(float64_alone);
     PreparedExperiment prepared;
     prepared.report = {
@@ -243,18 +243,15 @@ PreparedExperiment on_fans(bool is_quick) {
 }  // namespace
 
 std::vector<PlannedExperiment> normals_plan(const PlanOptions& options) {
-    const bool is_quick = options.is_quick;
     std::vector<PlannedExperiment> plan;
-    for (const Case& one : cases(is_quick)) {
+    for (const Case& one : cases(options.is_quick)) {
         plan.push_back(
             {fmt::format("normals/{}-{}", name_of(one.surface), name_of(one.triangulation)),
-             Subject::normals, "Normals: " + name_of(one),
-             [one, is_quick] { return on_case(one, is_quick); }});
+             "Normals: " + name_of(one),
+             [one](const PlanOptions& all) { return on_case(one, all); }});
     }
-    plan.push_back({"normals/large", Subject::normals, "Normals: a large mesh",
-                    [is_quick] { return normals_on_large_mesh(is_quick); }});
-    plan.push_back({"normals/fans", Subject::normals, "Normals: single fans",
-                    [is_quick] { return on_fans(is_quick); }});
+    plan.push_back({"normals/large", "Normals: a large mesh", normals_on_large_mesh});
+    plan.push_back({"normals/fans", "Normals: single fans", on_fans});
     return plan;
 }
 

@@ -353,29 +353,19 @@ PreparedExperiment edge_experiment(const PlanOptions& options) {
 
 }  // namespace
 
-std::vector<PlannedExperiment> shading_plan(const PlanOptions& options) {
-    const auto planned = [&](const char* id, const char* title,
-                             PreparedExperiment (*prepare)(const PlanOptions&)) {
-        return PlannedExperiment{id, Subject::shading, title,
-                                 [options, prepare] { return prepare(options); }};
-    };
+std::vector<PlannedExperiment> shading_plan(const PlanOptions&) {
     return {
-        planned("shading/interpolation", "Flat, Gouraud and Phong shading",
-                interpolation_experiment),
-        planned("shading/highlights", "Phong's and Blinn's highlights", highlight_experiment),
-        planned("shading/unit-normal", "Making the interpolated normal unit",
-                unit_normal_experiment),
-        planned("shading/fresnel-glass", "Schlick's factor against Fresnel's: glass",
-                glass_experiment),
-        planned("shading/fresnel-metal", "Schlick's factor against Fresnel's: a metal",
-                metal_experiment),
-        planned("shading/cube-map-size", "The size of a reflected cube map", reflection_experiment),
-        planned("shading/glossy-levels", "Rough mirrors by levels of a cube map",
-                glossy_experiment),
-        planned("shading/energy", "Energy lost by rough surfaces", energy_experiment),
-        planned("shading/specular-antialiasing", "Highlights smaller than a pixel",
-                specular_aliasing_experiment),
-        planned("shading/edges", "Edges by several samples per pixel", edge_experiment)};
+        {"shading/interpolation", "Flat, Gouraud and Phong shading", interpolation_experiment},
+        {"shading/highlights", "Phong's and Blinn's highlights", highlight_experiment},
+        {"shading/unit-normal", "Making the interpolated normal unit", unit_normal_experiment},
+        {"shading/fresnel-glass", "Schlick's factor against Fresnel's: glass", glass_experiment},
+        {"shading/fresnel-metal", "Schlick's factor against Fresnel's: a metal", metal_experiment},
+        {"shading/cube-map-size", "The size of a reflected cube map", reflection_experiment},
+        {"shading/glossy-levels", "Rough mirrors by levels of a cube map", glossy_experiment},
+        {"shading/energy", "Energy lost by rough surfaces", energy_experiment},
+        {"shading/specular-antialiasing", "Highlights smaller than a pixel",
+         specular_aliasing_experiment},
+        {"shading/edges", "Edges by several samples per pixel", edge_experiment}};
 }
 
 }  // namespace relief::accuracy::detail

@@ -204,8 +204,8 @@ constexpr const char* torus_ground_truth =
 constexpr std::uint32_t torus_seed = 1;
 constexpr std::uint32_t needles_seed = 1;
 
-int torus_cells(bool is_quick) {
-    return is_quick ? 32 : 64;
+int torus_cells(const PlanOptions& options) {
+    return options.is_quick ? 32 : 64;
 }
 
 NormalMethod textbook_normals(const std::string& name,
@@ -234,13 +234,13 @@ auto swept_normals(AnalyticMesh mesh) {
                                                              "triangle", triangles});
 }
 
-auto swept_torus(bool is_quick) {
+auto swept_torus(const PlanOptions& options) {
     return swept_normals(analytic_mesh(AnalyticSurface::torus, Triangulation::regular,
-                                       torus_cells(is_quick), torus_seed));
+                                       torus_cells(options), torus_seed));
 }
 
-PreparedExperiment normals_by_scale(bool is_quick) {
-    const auto torus = swept_torus(is_quick);
+PreparedExperiment normals_by_scale(const PlanOptions& options) {
+    const auto torus = swept_torus(options);
     return swept_experiment(
         {.question = "At which scales of a mesh are its normals accurate?",
          .ground_truth = torus_ground_truth,
@@ -253,8 +253,8 @@ PreparedExperiment normals_by_scale(bool is_quick) {
           changing<AnalyticMesh>(&Mesh::positions, larger)}});
 }
 
-PreparedExperiment normals_by_offset(bool is_quick) {
-    const auto torus = swept_torus(is_quick);
+PreparedExperiment normals_by_offset(const PlanOptions& options) {
+    const auto torus = swept_torus(options);
     return swept_experiment(
         {.question = "At which distances of a mesh from the origin are its normals accurate?",
          .ground_truth = torus_ground_truth,
@@ -266,8 +266,8 @@ PreparedExperiment normals_by_offset(bool is_quick) {
         "float, which no method can undo. Move meshes to the origin before storing them.");
 }
 
-PreparedExperiment normals_of_needles(bool is_quick) {
-    const std::size_t count = is_quick ? 1000 : 4000;
+PreparedExperiment normals_of_needles(const PlanOptions& options) {
+    const std::size_t count = options.is_quick ? 1000 : 4000;
     const auto by_width = [count](const AnalyticMesh&, double value) {
         return make_needles(count, 1.0 / value, needles_seed);
     };
@@ -282,8 +282,8 @@ PreparedExperiment normals_of_needles(bool is_quick) {
         {{"width", "Narrower", "length over width", 12, 1, by_width}});
 }
 
-PreparedExperiment normals_beside_hard_triangles(bool is_quick) {
-    const auto torus = swept_torus(is_quick);
+PreparedExperiment normals_beside_hard_triangles(const PlanOptions& options) {
+    const auto torus = swept_torus(options);
     Growths<AnalyticMesh> growths;
     for (const HardTriangleName& one : hard_triangle_names) {
         growths.push_back({one.id, one.title, "number of hard triangles", 3, 1,
@@ -313,7 +313,7 @@ constexpr const char* textured_torus_ground_truth =
     "position. Tests verify them by numerical differentiation of the surface.";
 
 /// The methods with stored tangents and textbook code, on a textured torus.
-auto textured_torus(bool is_quick) {
+auto textured_torus(const PlanOptions& options) {
     std::vector<FrameMethod> methods;
     for (FrameMethod& method : tangent_methods()) {
         method.choices = {{"frames", method.name}};
@@ -325,7 +325,7 @@ auto textured_torus(bool is_quick) {
                        [](const Mesh& mesh) { return TangentFrames{textbook_tangents(mesh)}; },
                        true});
     TexturedMesh torus = textured_mesh(AnalyticSurface::torus, Triangulation::regular,
-                                       TextureLayout::upright, torus_cells(is_quick), 1);
+                                       TextureLayout::upright, torus_cells(options), 1);
     const auto triangles = static_cast<double>(torus.mesh.triangles.size());
     using SweptTangents = Swept<TexturedMesh, Mesh, TangentFrames>;
     return std::make_shared<const SweptTangents>(
@@ -336,8 +336,8 @@ auto textured_torus(bool is_quick) {
                       "triangle", triangles});
 }
 
-PreparedExperiment tangents_by_scale(bool is_quick) {
-    const auto torus = textured_torus(is_quick);
+PreparedExperiment tangents_by_scale(const PlanOptions& options) {
+    const auto torus = textured_torus(options);
     return swept_experiment(
         {.question = "At which scales of a mesh and its texture coordinates are tangents accurate?",
          .ground_truth = textured_torus_ground_truth,
@@ -355,8 +355,8 @@ PreparedExperiment tangents_by_scale(bool is_quick) {
           changing<TexturedMesh>(&Mesh::texcoords, larger)}});
 }
 
-PreparedExperiment tangents_by_offset(bool is_quick) {
-    const auto torus = textured_torus(is_quick);
+PreparedExperiment tangents_by_offset(const PlanOptions& options) {
+    const auto torus = textured_torus(options);
     return swept_experiment(
         {.question = "At which distances of a mesh and its texture coordinates from the origin are "
                      "tangents accurate?",
@@ -375,14 +375,14 @@ PreparedExperiment tangents_by_offset(bool is_quick) {
 
 constexpr double swept_wavelength = 32.0;
 
-int map_side(bool is_quick) {
-    return (is_quick ? 64 : 192) + 2 * wave_margin;
+int map_side(const PlanOptions& options) {
+    return (options.is_quick ? 64 : 192) + 2 * wave_margin;
 }
 
 /// Two kernels in both arithmetics and textbook code, on a wave.
-auto swept_wave(bool is_quick) {
+auto swept_wave(const PlanOptions& options) {
     using SweptSlopes = Swept<BumpField, BumpField, Image>;
-    SweptSlopes swept{oblique_wave(map_side(is_quick), swept_wavelength, 32),
+    SweptSlopes swept{oblique_wave(map_side(options), swept_wavelength, 32),
                       {},
                       [](const BumpField& wave) -> const BumpField& { return wave; },
                       [](const Image& normals, const BumpField& wave) {
@@ -430,7 +430,7 @@ BumpField higher(BumpField wave, double by) {
     return wave;
 }
 
-PreparedExperiment bump_by_steepness(bool is_quick) {
+PreparedExperiment bump_by_steepness(const PlanOptions& options) {
     return swept_experiment(
         {.question = "At which slopes of a height map are its normals accurate?",
          .ground_truth =
@@ -438,13 +438,13 @@ PreparedExperiment bump_by_steepness(bool is_quick) {
              "them by numerical differentiation.",
          .input = fmt::format("{0} x {0} texels of a wave {1} texels long, at 31 slopes from 1e-30 "
                               "to 1e30",
-                              map_side(is_quick), swept_wavelength)},
-        "at slope 1", swept_wave(is_quick),
+                              map_side(options), swept_wavelength)},
+        "at slope 1", swept_wave(options),
         {{"steeper", "Steeper", "slope", 30, 2, steeper},
          {"flatter", "Flatter", "1 / slope", 30, 2, flatter}});
 }
 
-PreparedExperiment bump_by_offset(bool is_quick) {
+PreparedExperiment bump_by_offset(const PlanOptions& options) {
     return swept_experiment(
         {.question = "At which distances of the heights from zero are their normals accurate?",
          .ground_truth =
@@ -453,8 +453,8 @@ PreparedExperiment bump_by_offset(bool is_quick) {
          .input =
              fmt::format("{0} x {0} texels of a wave {1} texels long and 10 high, slope 1, at 9 "
                          "heights from 1 to 1e8",
-                         map_side(is_quick), swept_wavelength)},
-        "at 0", swept_wave(is_quick),
+                         map_side(options), swept_wavelength)},
+        "at 0", swept_wave(options),
         {{"offset", "Higher", "height above zero, texels", 8, 1, higher}},
         " The error of float64 is that of rounding these heights to float, which no method can "
         "undo: store heights relative to a zero within their range.");
@@ -462,23 +462,16 @@ PreparedExperiment bump_by_offset(bool is_quick) {
 
 }  // namespace
 
-std::vector<PlannedExperiment> stability_plan(const PlanOptions& options) {
-    const auto planned = [is_quick = options.is_quick](const char* id, const char* title,
-                                                       PreparedExperiment (*prepare)(bool)) {
-        return PlannedExperiment{id, Subject::stability, title,
-                                 [is_quick, prepare] { return prepare(is_quick); }};
-    };
-    return {
-        planned("stability/normals-scale", "Normals: scale", normals_by_scale),
-        planned("stability/normals-offset", "Normals: distance from the origin", normals_by_offset),
-        planned("stability/normals-needles", "Normals: needles", normals_of_needles),
-        planned("stability/normals-hard-triangles", "Normals: hard triangles",
-                normals_beside_hard_triangles),
-        planned("stability/tangents-scale", "Tangents: scale", tangents_by_scale),
-        planned("stability/tangents-offset", "Tangents: distance from the origin",
-                tangents_by_offset),
-        planned("stability/bump-steepness", "Bump: steepness", bump_by_steepness),
-        planned("stability/bump-offset", "Bump: height above zero", bump_by_offset)};
+std::vector<PlannedExperiment> stability_plan(const PlanOptions&) {
+    return {{"stability/normals-scale", "Normals: scale", normals_by_scale},
+            {"stability/normals-offset", "Normals: distance from the origin", normals_by_offset},
+            {"stability/normals-needles", "Normals: needles", normals_of_needles},
+            {"stability/normals-hard-triangles", "Normals: hard triangles",
+             normals_beside_hard_triangles},
+            {"stability/tangents-scale", "Tangents: scale", tangents_by_scale},
+            {"stability/tangents-offset", "Tangents: distance from the origin", tangents_by_offset},
+            {"stability/bump-steepness", "Bump: steepness", bump_by_steepness},
+            {"stability/bump-offset", "Bump: height above zero", bump_by_offset}};
 }
 
 }  // namespace relief::accuracy::detail

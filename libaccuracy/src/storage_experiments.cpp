@@ -343,8 +343,8 @@ Chart patches_chart(const Image& ground_truth, const std::vector<NormalCode>& co
     return chart;
 }
 
-PreparedExperiment normal_reading_experiment(bool is_quick) {
-    const int side = is_quick ? 128 : 512;
+PreparedExperiment normal_reading_experiment(const PlanOptions& options) {
+    const int side = options.is_quick ? 128 : 512;
     // The upper half, which a map in tangent space can represent.
     std::vector<glm::dvec3> directions =
         even_directions(2 * static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
@@ -363,7 +363,7 @@ PreparedExperiment normal_reading_experiment(bool is_quick) {
     return prepared;
 }
 
-PreparedExperiment normal_writing_experiment() {
+PreparedExperiment normal_writing_experiment(const PlanOptions&) {
     constexpr int side = 256;  // The same size as in docs/normal-maps.md.
     const auto input = std::make_shared<const ExactTexels>(smooth_surface(side), side);
     PreparedExperiment prepared = code_experiment(
@@ -492,9 +492,9 @@ std::vector<Method> frame_methods(const std::shared_ptr<const SampleFrames>& fra
 namespace {
 
 /// All encodings on evenly spread frames.
-PreparedExperiment frame_experiment(bool is_quick, StorageWork work) {
+PreparedExperiment frame_experiment(const PlanOptions& options, StorageWork work) {
     const auto frames =
-        std::make_shared<const SampleFrames>(even_frames(is_quick ? 20000 : 200000));
+        std::make_shared<const SampleFrames>(even_frames(options.is_quick ? 20000 : 200000));
     const bool is_decoding = work == StorageWork::decode;
     PreparedExperiment prepared;
     prepared.report = {
@@ -610,8 +610,8 @@ Chart wavelengths_chart(int side) {
         });
 }
 
-PreparedExperiment compression_experiment(bool is_quick, bool is_filtered) {
-    const int side = is_quick ? 128 : 512;
+PreparedExperiment compression_experiment(const PlanOptions& options, bool is_filtered) {
+    const int side = options.is_quick ? 128 : 512;
     const auto waves = std::make_shared<const ExactTexels>(compressed_waves(side, 20.0), side);
     std::vector<NormalCode> methods = compressions();
     // A GPU filters codes, and means of octahedral codes across a fold are not normals.
@@ -641,24 +641,22 @@ PreparedExperiment compression_experiment(bool is_quick, bool is_filtered) {
 
 }  // namespace
 
-std::vector<PlannedExperiment> compression_plan(const PlanOptions& options) {
-    const bool is_quick = options.is_quick;
-    return {{"compression/waves", Subject::compression, "Normal maps in block formats",
-             [is_quick] { return compression_experiment(is_quick, false); }},
-            {"compression/filtered", Subject::compression, "Compression, filtered between texels",
-             [is_quick] { return compression_experiment(is_quick, true); }}};
+std::vector<PlannedExperiment> compression_plan(const PlanOptions&) {
+    return {{"compression/waves", "Normal maps in block formats",
+             [](const PlanOptions& options) { return compression_experiment(options, false); }},
+            {"compression/filtered", "Compression, filtered between texels",
+             [](const PlanOptions& options) { return compression_experiment(options, true); }}};
 }
 
-std::vector<PlannedExperiment> storage_plan(const PlanOptions& options) {
-    const bool is_quick = options.is_quick;
-    return {{"storage/normals", Subject::storage, "Normals in few bits",
-             [is_quick] { return normal_reading_experiment(is_quick); }},
-            {"storage/smooth-surface", Subject::storage, "A smooth surface in few bits, written",
+std::vector<PlannedExperiment> storage_plan(const PlanOptions&) {
+    using enum StorageWork;
+    return {{"storage/normals", "Normals in few bits", normal_reading_experiment},
+            {"storage/smooth-surface", "A smooth surface in few bits, written",
              normal_writing_experiment},
-            {"storage/frames", Subject::storage, "Tangent frames in few bits",
-             [is_quick] { return frame_experiment(is_quick, StorageWork::decode); }},
-            {"storage/frames-written", Subject::storage, "Tangent frames in few bits, written",
-             [is_quick] { return frame_experiment(is_quick, StorageWork::encode); }}};
+            {"storage/frames", "Tangent frames in few bits",
+             [](const PlanOptions& options) { return frame_experiment(options, decode); }},
+            {"storage/frames-written", "Tangent frames in few bits, written",
+             [](const PlanOptions& options) { return frame_experiment(options, encode); }}};
 }
 
 }  // namespace relief::accuracy::detail

@@ -436,7 +436,7 @@ PreparedExperiment on_mesh(TexturedMesh mesh, const std::string& input) {
     return prepared;
 }
 
-PreparedExperiment on_case(const TexturedCase& one, bool is_quick) {
+PreparedExperiment on_case(const TexturedCase& one, const PlanOptions& options) {
     const std::string input = one.triangulation
                                   ? fmt::format("{}, {} x {} cells", one.name,
                                                 cells_of_tangent_tables, cells_of_tangent_tables)
@@ -446,14 +446,14 @@ PreparedExperiment on_case(const TexturedCase& one, bool is_quick) {
         "What is the error of the normal of a texel tilted by 30 degrees, by frame method ({})?",
         one.name);
     prepared.costs.memory = false;
-    prepared.finish = [one, is_quick](Experiment& report) {
+    prepared.finish = [one, is_quick = options.is_quick](Experiment& report) {
         report.charts = {one.triangulation ? cells_chart(one, is_quick) : bevels_chart()};
     };
     return prepared;
 }
 
-PreparedExperiment tangents_on_large_mesh(bool is_quick) {
-    const int cells = is_quick ? 128 : 400;
+PreparedExperiment tangents_on_large_mesh(const PlanOptions& options) {
+    const int cells = options.is_quick ? 128 : 400;
     PreparedExperiment prepared =
         on_mesh(textured_mesh(AnalyticSurface::torus, Triangulation::jittered,
                               TextureLayout::upright, cells, 1),
@@ -462,10 +462,10 @@ PreparedExperiment tangents_on_large_mesh(bool is_quick) {
     return prepared;
 }
 
-PreparedExperiment mismatches(bool is_quick) {
+PreparedExperiment mismatches(const PlanOptions& options) {
     const auto ground_truth = std::make_shared<const TexturedMesh>(
         textured_mesh(AnalyticSurface::torus, Triangulation::jittered, TextureLayout::upright,
-                      is_quick ? 32 : cells_of_tangent_tables, 1));
+                      options.is_quick ? 32 : cells_of_tangent_tables, 1));
     PreparedExperiment prepared;
     prepared.report = described(*ground_truth);
     prepared.report.question =
@@ -491,20 +491,16 @@ PreparedExperiment mismatches(bool is_quick) {
 }  // namespace
 
 std::vector<PlannedExperiment> tangents_plan(const PlanOptions& options) {
-    const bool is_quick = options.is_quick;
     std::vector<PlannedExperiment> plan;
     for (const TexturedCase& one : textured_cases()) {
-        if (is_quick && !one.is_quick) continue;
-        plan.push_back({"tangents/" + one.id, Subject::tangents, "Tangents: " + one.name,
-                        [one, is_quick] { return on_case(one, is_quick); }});
+        if (options.is_quick && !one.is_quick) continue;
+        plan.push_back({"tangents/" + one.id, "Tangents: " + one.name,
+                        [one](const PlanOptions& all) { return on_case(one, all); }});
     }
-    plan.push_back({"tangents/large", Subject::tangents, "Tangents: a large mesh",
-                    [is_quick] { return tangents_on_large_mesh(is_quick); }});
-    plan.push_back({"tangents/mismatch", Subject::tangents, "Tangents: bases that differ",
-                    [is_quick] { return mismatches(is_quick); }});
-    plan.push_back({"tangents/drawn", Subject::tangents,
-                    "Tangents: frames stored and derived, drawn",
-                    [options] { return rendered_frames_experiment(options); }});
+    plan.push_back({"tangents/large", "Tangents: a large mesh", tangents_on_large_mesh});
+    plan.push_back({"tangents/mismatch", "Tangents: bases that differ", mismatches});
+    plan.push_back({"tangents/drawn", "Tangents: frames stored and derived, drawn",
+                    rendered_frames_experiment});
     return plan;
 }
 

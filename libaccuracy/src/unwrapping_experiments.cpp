@@ -298,9 +298,9 @@ PreparedExperiment unwrapping_texels(Mesh given, const std::string& description,
     return prepared;
 }
 
-PreparedExperiment unwrapping_of_large_mesh(bool is_quick) {
-    const int size = is_quick ? 512 : 2048;
-    const auto mesh = std::make_shared<const Mesh>(wavy_sphere(is_quick ? 32 : 289, 0.0));
+PreparedExperiment unwrapping_of_large_mesh(const PlanOptions& options) {
+    const int size = options.is_quick ? 512 : 2048;
+    const auto mesh = std::make_shared<const Mesh>(wavy_sphere(options.is_quick ? 32 : 289, 0.0));
     PreparedExperiment prepared = unwrapping_of(*mesh, "sphere with waves", size);
     prepared.report.question = "How much time and memory does the unwrapping of a large mesh cost?";
     prepared.report.ground_truth =
@@ -333,17 +333,23 @@ std::vector<PlannedExperiment> unwrapping_plan(const PlanOptions& options) {
     const int size = is_quick ? 512 : 2048;
     const int cells = is_quick ? 16 : 64;
     const auto noisy = [cells] { return wavy_sphere(cells, 0.002); };
-    return {
-        {"unwrapping/smooth-stretch", Subject::unwrapping, "Unwrapping: smooth surface, stretch",
-         [=] { return unwrapping_stretch(wavy_sphere(cells, 0.0), "sphere with waves", size); }},
-        {"unwrapping/noisy-stretch", Subject::unwrapping, "Unwrapping: noisy surface, stretch",
-         [=] { return unwrapping_stretch(noisy(), "sphere with waves and noise", size); }},
-        {"unwrapping/sharp-stretch", Subject::unwrapping, "Unwrapping: sharp edges, stretch",
-         [=] { return unwrapping_stretch(gear_wheel(12, is_quick ? 3 : 16), "gear", size); }},
-        {"unwrapping/noisy-texels", Subject::unwrapping, "Unwrapping: noisy surface, unused texels",
-         [=] { return unwrapping_texels(noisy(), "sphere with waves and noise", size); }},
-        {"unwrapping/large", Subject::unwrapping, "Unwrapping: a large mesh",
-         [=] { return unwrapping_of_large_mesh(is_quick); }}};
+    return {{"unwrapping/smooth-stretch", "Unwrapping: smooth surface, stretch",
+             [=](const auto&) {
+                 return unwrapping_stretch(wavy_sphere(cells, 0.0), "sphere with waves", size);
+             }},
+            {"unwrapping/noisy-stretch", "Unwrapping: noisy surface, stretch",
+             [=](const auto&) {
+                 return unwrapping_stretch(noisy(), "sphere with waves and noise", size);
+             }},
+            {"unwrapping/sharp-stretch", "Unwrapping: sharp edges, stretch",
+             [=](const auto&) {
+                 return unwrapping_stretch(gear_wheel(12, is_quick ? 3 : 16), "gear", size);
+             }},
+            {"unwrapping/noisy-texels", "Unwrapping: noisy surface, unused texels",
+             [=](const auto&) {
+                 return unwrapping_texels(noisy(), "sphere with waves and noise", size);
+             }},
+            {"unwrapping/large", "Unwrapping: a large mesh", unwrapping_of_large_mesh}};
 }
 
 }  // namespace relief::accuracy::detail

@@ -183,15 +183,16 @@ TEST(Finding, LeavesOutMethodsWithUndefinedResults) {
 /// An experiment whose rounds have the times that `seconds` returns.
 PlannedExperiment planned(const std::string& id, std::size_t methods,
                           const std::function<double()>& seconds) {
-    return {id, Subject::bump, "Title of " + id, [methods, seconds] {
-                PreparedExperiment prepared{.costs = one_thread_alone};
-                for (std::size_t i = 0; i < methods; ++i) {
-                    prepared.methods.push_back(
-                        method_of(std::string(1, static_cast<char>('a' + i)), 1.0, {}));
-                    prepared.methods.back().round = seconds;
-                }
-                return prepared;
-            }};
+    const auto prepare = [methods, seconds](const PlanOptions&) {
+        PreparedExperiment prepared{.costs = one_thread_alone};
+        for (std::size_t i = 0; i < methods; ++i) {
+            prepared.methods.push_back(
+                method_of(std::string(1, static_cast<char>('a' + i)), 1.0, {}));
+            prepared.methods.back().round = seconds;
+        }
+        return prepared;
+    };
+    return {id, "Title of " + id, prepare, Subject::bump};
 }
 
 PlannedExperiment planned(const std::string& id) {
@@ -222,15 +223,17 @@ TEST(RunPlanned, EndsIfTheCallbackThrows) {
         if (progress.done == 1) throw std::runtime_error("enough");
     };
     std::size_t runs = 0;
-    const PlannedExperiment counted{"x", Subject::bump, "x",
-                                    [&] { return ++runs, PreparedExperiment{}; }};
+    const PlannedExperiment counted{
+        "x", "x", [&](const PlanOptions&) { return ++runs, PreparedExperiment{}; }};
     EXPECT_THROW(run_planned({counted, counted}, options), std::runtime_error);
     EXPECT_EQ(runs, 1U);
 }
 
 TEST(RunPlanned, SkipsExcludedExperiments) {
     PlannedExperiment left_out = planned("left out");
-    left_out.prepare = []() -> PreparedExperiment { throw std::runtime_error("prepared"); };
+    left_out.prepare = [](const PlanOptions&) -> PreparedExperiment {
+        throw std::runtime_error("prepared");
+    };
     RunOptions options = rounds(1);
     options.selects_experiment = [](const std::string& id) { return id == "taken"; };
     const std::vector<Experiment> found = run_planned({left_out, planned("taken")}, options);
@@ -271,7 +274,7 @@ TEST(Passes, AreAtMostTheNumberOfRounds) {
 TEST(Passes, PrepareComputeErrorsAndFinishOnce) {
     std::string calls;
     PlannedExperiment plan = planned("a");
-    plan.prepare = [&] {
+    plan.prepare = [&](const PlanOptions&) {
         calls += "prepare ";
         PreparedExperiment prepared{.costs = {.memory = false}};
         prepared.methods = {method_of("one", 1.0, [] {})};

@@ -96,7 +96,8 @@ TEST(RenderedMethods, ReportMissingOpenGL) {
     ASSERT_FALSE(plan_options.device.get()->is_available());
     RunOptions options = test::quick_untimed();
     options.selects_experiment = [](const std::string& id) { return id == "shading/edges"; };
-    const std::vector<Experiment> all = run_planned(shading_plan(plan_options), options);
+    const std::vector<Experiment> all =
+        run_planned(shading_plan(plan_options), options, plan_options);
     ASSERT_EQ(all.size(), 1U);
     const Experiment& experiment = all.front();
     EXPECT_TRUE(experiment.measurements.empty());
