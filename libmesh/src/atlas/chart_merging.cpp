@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -40,9 +41,10 @@ constexpr double dust_energy = 1.0;
 constexpr int max_failures = 3;
 constexpr int max_dust_failures = 6;
 /// The number of faces of all unions that are tried, per face of the surface: with small charts,
-/// with dust, and with larger charts. These may also try a fixed number of faces, which costs
-/// little time.
-constexpr double max_tried_faces = 3.0;
+/// with dust, and with larger charts. Small and larger charts may also try a fixed number of faces,
+/// which costs little time.
+constexpr double max_tried_faces = 2.0;
+constexpr double max_tried_besides = 250000.0;
 constexpr double max_tried_with_dust = 1.0;
 constexpr double max_tried_large = 0.05;
 constexpr double max_tried_at_all = 20000.0;
@@ -66,7 +68,8 @@ class ChartMerger {
           perimeters_(charts_.size()),
           energies_(charts_.size()),
           failures_(charts_.size(), 0),
-          faces_left_(max_tried_faces * static_cast<double>(surface.faces.size())),
+          faces_left_(max_tried_faces * static_cast<double>(surface.faces.size()) +
+                      std::min(max_tried_besides, static_cast<double>(surface.faces.size()))),
           dust_faces_left_(max_tried_with_dust * static_cast<double>(surface.faces.size())),
           large_faces_left_(max_tried_at_all +
                             max_tried_large * static_cast<double>(surface.faces.size())) {
@@ -182,6 +185,17 @@ class ChartMerger {
         if (is_dust(pair)) energy += dust_energy * charts_[smaller(pair)].area / area;
         return std::max(max_union_energy, energy);
     }
+    /// Dust, whose energy hardly counts, must not bring a triangle near the stretch limit that was
+    /// far from it.
+    [[nodiscard]] FlatnessLimits limits_of(const Pair& pair) const {
+        FlatnessLimits limits = limits_;
+        if (!is_dust(pair)) return limits;
+        const double largest = std::max(largest_stretch(surface_, charts_[pair.a], total_area_),
+                                        largest_stretch(surface_, charts_[pair.b], total_area_));
+        limits.max_stretch =
+            std::min(limits.max_stretch, std::max(largest, std::sqrt(limits.max_stretch)));
+        return limits;
+    }
     /// Returns the energy of a pair before anything was merged.
     [[nodiscard]] double mean_energy(const Pair& pair) const {
         const double a = charts_[pair.a].area;
@@ -222,8 +236,8 @@ class ChartMerger {
         parallel_for(pairs.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 check_cancelled();
-                unions[i] = flattened_union(surface_, members_, std::move(faces[i]), limits_,
-                                            total_area_, max_energy(pairs[i]));
+                unions[i] = flattened_union(surface_, members_, std::move(faces[i]),
+                                            limits_of(pairs[i]), total_area_, max_energy(pairs[i]));
             }
         });
         for (std::size_t i = 0; i < pairs.size(); ++i) {

@@ -407,6 +407,18 @@ double energy_of(const AtlasSurface& surface, const FlatChart& chart) {
     return energy / (4.0 * area);
 }
 
+double largest_stretch(const AtlasSurface& surface, const FlatChart& chart, double total_area) {
+    const double min_area = min_area_share(surface.faces.size()) * total_area;
+    double largest = 1.0;
+    for (std::uint32_t i = 0; i < chart.mesh.faces.size(); ++i) {
+        const std::uint32_t face = chart.mesh.faces[i];
+        if (surface.areas[face] < min_area) continue;
+        const auto corners = corners_of(chart.mesh, i, chart.coordinates);
+        largest = std::max(largest, stretch_ratio(stretch_of(surface, face, corners)));
+    }
+    return largest;
+}
+
 std::optional<FlatChart> flattened_union(const AtlasSurface& surface, ChartMembers& members,
                                          std::vector<std::uint32_t> faces,
                                          const FlatnessLimits& limits, double total_area,

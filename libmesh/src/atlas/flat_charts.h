@@ -62,6 +62,10 @@ std::vector<FlatChart> flat_charts(const AtlasSurface& surface, Segmentation& se
 /// isometric map; it is 1 if nothing is stretched, and may be infinite.
 double energy_of(const AtlasSurface& surface, const FlatChart& chart);
 
+/// Returns the largest stretch of the triangles of a chart for which the limit holds, as a ratio of
+/// singular values or of areas. \param total_area  of the surface
+double largest_stretch(const AtlasSurface& surface, const FlatChart& chart, double total_area);
+
 /// Flattens a connected union of charts.
 /// \param faces  ascending, of one chart of `members`. \param total_area  of the surface
 /// \param max_energy  the largest permitted energy_of()
