@@ -160,7 +160,9 @@ class LayerMap {
   private:
     void measure(std::span<const float> values, std::span<const std::byte> codes,
                  std::span<const TexelState> states) {
-        const auto channels = static_cast<std::size_t>(image_.channels);
+        // Images have at most four, which GCC 13 does not see.
+        const std::size_t channels =
+            std::min(static_cast<std::size_t>(image_.channels), min_.size());
         const std::size_t of_layer = coding_.channels();
         for (std::size_t i = 0; i < states.size(); ++i) {
             if (states[i] != TexelState::baked && states[i] != TexelState::padded) continue;
