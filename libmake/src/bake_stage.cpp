@@ -12,6 +12,7 @@
 #include <memory>
 #include <utility>
 
+#include "part_groups.h"
 #include "relief/mesh/normal_map.h"
 
 namespace relief::make {
@@ -240,17 +241,20 @@ void darken_red(Image& map, const Image& other) {
 
 class MapBaker {
   public:
-    MapBaker(const AssetSource& source, const Mesh& high, const AssetOptions& options, Asset& asset)
+    MapBaker(const AssetSource& source, const detail::BakedSource& baked,
+             const AssetOptions& options, Asset& asset)
         : source_(source),
-          high_(high),
+          baked_(baked),
+          high_(baked.high),
           options_(options),
-          varying_(varying_properties(high, source)),
+          varying_(varying_properties(high_, source)),
           asset_(asset) {}
 
     void bake(Report& report);
 
   private:
     [[nodiscard]] BakeOptions bake_options() const;
+    [[nodiscard]] Baker baker_of_parts(BakeOptions options, Report& report);
     void set_factors();
     void bake_surface(const Baker& baker, Report& report);
     [[nodiscard]] Image bake_occlusion(const Baker& baker, Report& report);
@@ -259,7 +263,9 @@ class MapBaker {
     void store_emission(LayerMap& map, double strength);
 
     const AssetSource& source_;
+    const detail::BakedSource& baked_;
     const Mesh& high_;
+    detail::BakedParts parts_;  ///< If they are matched.
     const AssetOptions& options_;
     VaryingProperties varying_;
     Asset& asset_;
@@ -428,8 +434,22 @@ void MapBaker::store_emission(LayerMap& map, double strength) {
     asset_.emission_map = std::move(map.image());
 }
 
+/// Returns a baker for which each part of the asset sees only its part of the source.
+Baker MapBaker::baker_of_parts(BakeOptions options, Report& report) {
+    parts_ = detail::divided(high_, baked_.high_parts, baked_.low_parts);
+    options.materials.clear();
+    for (const Mesh& mesh : parts_.meshes)
+        options.materials.push_back({&mesh, source_.materials, {}, source_.otherwise});
+    options.parts_occlude = true;
+    // The decimation may have left little of a small part.
+    options.allow_size_mismatch = true;
+    return {parts_.parts, asset_.mesh, options, report};
+}
+
 void MapBaker::bake(Report& report) {
-    const Baker baker(std::span(&high_, 1), asset_.mesh, bake_options(), report);
+    const Baker baker = asset_.parts.is_matched
+                            ? baker_of_parts(bake_options(), report)
+                            : Baker(std::span(&high_, 1), asset_.mesh, bake_options(), report);
     asset_.agreement = baker.agreement();
     set_factors();
     bake_surface(baker, report);
@@ -452,9 +472,9 @@ void MapBaker::bake(Report& report) {
 
 }  // namespace
 
-void detail::bake_maps(const AssetSource& source, const Mesh& high, const AssetOptions& options,
-                       Asset& asset, Report& report) {
-    MapBaker(source, high, options, asset).bake(report);
+void detail::bake_maps(const AssetSource& source, const BakedSource& baked,
+                       const AssetOptions& options, Asset& asset, Report& report) {
+    MapBaker(source, baked, options, asset).bake(report);
 }
 
 }  // namespace relief::make

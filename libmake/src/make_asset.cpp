@@ -12,6 +12,7 @@
 #include "bake_stage.h"
 #include "geometry/triangle_stacks.h"
 #include "geometry/weld.h"
+#include "part_groups.h"
 #include "relief/make/asset.h"
 #include "relief/mesh/frames.h"
 #include "remesh_judgment.h"
@@ -100,6 +101,10 @@ class Maker {
     [[nodiscard]] RemeshOptions grid() const;
     void begin(const AssetStart& start);
     [[nodiscard]] const Mesh& dense_surface() const;
+    void find_parts(const FramedMesh& repaired);
+    [[nodiscard]] std::vector<std::uint32_t> parts_of_dense_surface() const;
+    [[nodiscard]] std::string reason_for_one_part() const;
+    void match_parts(Report& report);
     void decimate(Report& report);
     void separate_sides(Report& report);
     void unwrap_mesh(Report& report);
@@ -110,6 +115,10 @@ class Maker {
     const AssetSource& source_;
     const AssetOptions& options_;
     Mesh high_;
+    NamedParts high_parts_;  ///< Of `high_`, with a name for each number.
+    /// The part of each triangle of the asset's mesh; empty: not known.
+    std::vector<std::uint32_t> low_parts_;
+    std::string unmatched_;       ///< Names of parts of AssetStart that the source does not have.
     std::optional<Mesh> closed_;  ///< The closed surface that replaces the triangles of `high_`.
     detail::RemeshEvidence evidence_;
     Asset asset_;
@@ -134,9 +143,16 @@ RepairOptions with_sides_together(RepairOptions options) {
 
 void Maker::repair(Report& report) {
     validate(source_.mesh);
-    Mesh mesh = options_.repair
-                    ? repaired(source_.mesh, with_sides_together(*options_.repair), report).mesh
-                    : source_.mesh;
+    FramedMesh result;
+    if (options_.repair) {
+        result = repaired(source_.mesh, with_sides_together(*options_.repair), report);
+    } else {
+        result.mesh = source_.mesh;
+        result.source_vertex.resize(result.mesh.positions.size());
+        std::iota(result.source_vertex.begin(), result.source_vertex.end(), 0U);
+    }
+    find_parts(result);
+    Mesh& mesh = result.mesh;
     std::vector<std::uint32_t> usable;
     usable.reserve(mesh.triangles.size());
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -148,6 +164,12 @@ void Maker::repair(Report& report) {
         }
     }
     if (usable.empty()) throw InvalidInput("has no triangle with an area and finite positions");
+    if (!high_parts_.names.empty()) {
+        std::vector<std::uint32_t> parts;
+        for (const std::uint32_t triangle : usable)
+            parts.push_back(high_parts_.part_of[triangle]);
+        high_parts_.part_of = std::move(parts);
+    }
     high_ = usable.size() == mesh.triangles.size() ? std::move(mesh) : part_of(mesh, usable);
     if (high_.normals.empty()) {
         FrameOptions frames;
@@ -160,6 +182,65 @@ void Maker::repair(Report& report) {
     if (judges_remeshing(options_)) {
         evidence_.crowded_edges =
             detail::crowded_edge_share(high_, options_.repair ? &report : nullptr);
+    }
+}
+
+/// Finds the parts of the repaired source that a bake can keep apart.
+void Maker::find_parts(const FramedMesh& repaired) {
+    if (source_.parts.names.size() < 2) return;
+    high_parts_ = detail::separate_parts(source_.mesh, source_.parts);
+    high_parts_.part_of = detail::parts_of_copy(source_.mesh, high_parts_.part_of, repaired);
+    if (options_.repair && options_.repair->weld_tolerance > 0.0)
+        high_parts_ = detail::separate_parts(repaired.mesh, high_parts_);
+}
+
+/// Returns the parts of the triangles to decimate; empty if they are not known.
+std::vector<std::uint32_t> Maker::parts_of_dense_surface() const {
+    if (closed_ || high_parts_.names.empty()) return {};
+    if (!options_.start) return high_parts_.part_of;
+    if (options_.start->is_repaired_source &&
+        options_.start->mesh.triangles.size() == high_.triangles.size())
+        return high_parts_.part_of;
+    return low_parts_;
+}
+
+/// Returns why each part of the asset sees all of the source; empty if it sees its own part.
+std::string Maker::reason_for_one_part() const {
+    if (options_.match == PartMatching::all) return "it was requested";
+    if (source_.parts.names.size() < 2) return "the model has one part";
+    if (high_parts_.names.size() < 2)
+        return "the parts of the model touch each other or have one name";
+    if (closed_ || (options_.start && options_.start->is_remeshed))
+        return "a closed surface replaces the parts";
+    if (!unmatched_.empty()) return "the model has no part " + unmatched_;
+    if (low_parts_.empty()) return "the mesh to continue with has no names of parts";
+    return "";
+}
+
+/// Decides whether parts are matched. \throws InvalidInput if they must be, but cannot
+void Maker::match_parts(Report& report) {
+    PartDecision& decision = asset_.parts;
+    decision.reason = reason_for_one_part();
+    decision.is_matched = decision.reason.empty();
+    if (!low_parts_.empty()) decision.of_asset = {high_parts_.names, low_parts_};
+    if (!decision.is_matched) {
+        if (options_.match == PartMatching::name && !unmatched_.empty())
+            throw InvalidInput("parts cannot be matched by name: " + decision.reason);
+        if (source_.parts.names.size() > 1 && options_.match != PartMatching::all)
+            report.add("parts that are not matched by name", "asset", 0,
+                       "see all parts of the model: " + decision.reason);
+        return;
+    }
+    for (const std::string& name : high_parts_.names)
+        decision.parts.push_back({name, 0, 0});
+    for (const std::uint32_t part : high_parts_.part_of)
+        ++decision.parts[part].source_triangles;
+    for (const std::uint32_t part : low_parts_)
+        ++decision.parts[part].triangles;
+    for (std::size_t part = 0; part < decision.parts.size(); ++part) {
+        if (decision.parts[part].triangles == 0)
+            report.add("part of the model without a part of the asset", "part", part,
+                       fmt::format("{} is not shown", decision.parts[part].name));
     }
 }
 
@@ -187,8 +268,13 @@ void Maker::judge(Report& report) {
 /// of its own.
 void Maker::separate_sides(Report& report) {
     Report known;  // The repair has counted the others.
-    high_ = repaired(high_, *options_.repair, known).mesh;
-    asset_.mesh = repaired(asset_.mesh, *options_.repair, known).mesh;
+    FramedMesh high = repaired(high_, *options_.repair, known);
+    FramedMesh low = repaired(asset_.mesh, *options_.repair, known);
+    if (!high_parts_.names.empty())
+        high_parts_.part_of = detail::parts_of_copy(high_, high_parts_.part_of, high);
+    if (!low_parts_.empty()) low_parts_ = detail::parts_of_copy(asset_.mesh, low_parts_, low);
+    high_ = std::move(high.mesh);
+    asset_.mesh = std::move(low.mesh);
     report.add("surface with doubled walls", "mesh", 0,
                "has sides that are a millionth of its size apart");
 }
@@ -201,6 +287,26 @@ const Mesh& Maker::dense_surface() const {
 
 /// Takes the mesh of a stage that is left out.
 void Maker::begin(const AssetStart& start) {
+    const auto name_of = [&](const std::string& name) {
+        // "base + hinge" are the names of one part.
+        return std::ranges::find_if(high_parts_.names, [&](const std::string& names) {
+            return names == name ||
+                   (" + " + names + " + ").find(" + " + name + " + ") != std::string::npos;
+        });
+    };
+    if (!start.parts.names.empty() && !high_parts_.names.empty()) {
+        std::vector<std::uint32_t> numbers;
+        for (const std::string& name : start.parts.names) {
+            const auto found = name_of(name);
+            if (found == high_parts_.names.end())
+                unmatched_ += (unmatched_.empty() ? "" : ", ") + name;
+            numbers.push_back(static_cast<std::uint32_t>(found - high_parts_.names.begin()));
+        }
+        if (unmatched_.empty()) {
+            for (const std::uint32_t part : start.parts.part_of)
+                low_parts_.push_back(numbers[part]);
+        }
+    }
     if (start.stage == "decimate") return;
     asset_.mesh = start.mesh;
     asset_.mesh.name = source_.name;
@@ -210,7 +316,10 @@ void Maker::begin(const AssetStart& start) {
                                 .empty();
     if (has_sides) {
         Report known;
-        high_ = repaired(high_, *options_.repair, known).mesh;
+        FramedMesh high = repaired(high_, *options_.repair, known);
+        if (!high_parts_.names.empty())
+            high_parts_.part_of = detail::parts_of_copy(high_, high_parts_.part_of, high);
+        high_ = std::move(high.mesh);
     }
 }
 
@@ -256,6 +365,9 @@ void Maker::decimate(Report& report) {
     const Mesh& dense = dense_surface();
     surface.positions = dense.positions;
     surface.triangles = dense.triangles;
+    // Parts share no vertex, so that borders between materials do not limit the decimation.
+    const std::vector<std::uint32_t> parts = parts_of_dense_surface();
+    surface.material_ranges = detail::ranges_of(parts);
     if (options_.keep_texcoords) {
         surface.texcoords = dense.texcoords;
         if (surface.texcoords.empty())
@@ -274,6 +386,9 @@ void Maker::decimate(Report& report) {
     limits.frames.tangents = TangentMethod::none;
     asset_.mesh = decimated_in_steps(surface, limits, report);
     if (asset_.mesh.triangles.empty()) throw InvalidInput("no triangle is left after decimation");
+    low_parts_.clear();
+    if (!parts.empty()) low_parts_ = detail::parts_of_ranges(asset_.mesh);
+    asset_.mesh.material_ranges.clear();
     const bool is_remeshed = closed_ || (options_.start && options_.start->is_remeshed);
     if (options_.repair && !is_remeshed && report.count("double-sided triangle") > 0)
         separate_sides(report);
@@ -304,7 +419,8 @@ void Maker::compute_frames(Report& report) {
 }
 
 void Maker::bake(Report& report) {
-    detail::bake_maps(source_, high_, options_, asset_, report);
+    match_parts(report);
+    detail::bake_maps(source_, {high_, high_parts_, low_parts_}, options_, asset_, report);
 }
 
 void Maker::run_stage(const std::string& name, void (Maker::*work)(Report&)) {

@@ -341,6 +341,7 @@ def make(
     keep_uvs: bool = False,
     normal_bits: Literal[8, 16] = 8,
     samples: Literal[1, 4, 16, 64] = 1,
+    match: Literal["auto", "name", "all"] = "auto",
     occlusion_rays: int = 32,
     layers: Sequence[Literal["height", "curvature", "position"]] = (),
     engine: Literal["gltf", "godot", "unity", "unreal"] = "gltf",

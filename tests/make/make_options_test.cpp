@@ -42,6 +42,7 @@ const std::map<std::string, Json>& samples() {
                                                     {"keep-uvs", true},
                                                     {"normal-bits", 16},
                                                     {"samples", 4},
+                                                    {"match", "all"},
                                                     {"occlusion-rays", 0},
                                                     {"layers", "curvature,height"},
                                                     {"for", "unreal"},

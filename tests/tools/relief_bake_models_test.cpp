@@ -477,6 +477,23 @@ TEST(ModelPairs, PartsWithoutACounterpartAreSeenByAllRefusedOrCounted) {
               "and X_high, or use --match all)");
 }
 
+TEST(ModelPairs, EqualNamesOfObjectsAreMatchedWithoutAConvention) {
+    const MapModel low = model({"Lid", "Base"}), one = model({"Lid"}), named = model({"lid_low"});
+    const MapModel high = model({"lid", "BASE", "base"}), more = model({"lid", "base", "floor"});
+    const std::vector<NamedModel> two = {{"h_high.obj", &high}}, three = {{"h.obj", &more}};
+    const ModelPairs pairs = pair_models(two, {"l_low.obj", &low}, PartMatching::automatic);
+    ASSERT_EQ(pairs.pairs.size(), 2U);
+    EXPECT_EQ(pairs.pairs[0].name, "base");
+    EXPECT_THAT(pairs.pairs[0].low, ElementsAre(1));
+    EXPECT_EQ(pairs.pairs[0].high.size(), 2U);
+    EXPECT_THAT(pairs.pairs[1].low, ElementsAre(0));
+    EXPECT_EQ(pair_models(two, {"l.obj", &low}, PartMatching::name).pairs.size(), 2U);
+    // A part without a counterpart, a single part, and a name of the convention.
+    EXPECT_THAT(pair_models(three, {"l.obj", &low}, PartMatching::automatic).pairs, IsEmpty());
+    EXPECT_THAT(pair_models(two, {"l.obj", &one}, PartMatching::automatic).pairs, IsEmpty());
+    EXPECT_THAT(pair_models(two, {"l.obj", &named}, PartMatching::automatic).pairs, IsEmpty());
+}
+
 /// Two squares of side 2 side by side, each with half of the map, and a high square 0.05 above
 /// each. The right high square also covers the left one, 0.02 above it.
 class PairedBake : public testing::Test {

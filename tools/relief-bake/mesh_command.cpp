@@ -482,13 +482,11 @@ void add_ray_options(CLI::App& app, MeshBakeRequest& request) {
                "Distance inside the low mesh at which rays end. Default: as for --offset; with "
                "--cage, the distance to the cage.")
         .group(group);
-    add_choice(app, "--match", request.match,
-               Choices<PartMatching>{{"auto", PartMatching::automatic},
-                                     {"name", PartMatching::name},
-                                     {"all", PartMatching::all}},
+    add_choice(app, "--match", request.match, enum_choices<PartMatching>(),
                "High parts that each low part sees: name selects parts with the same object or "
-               "file name (X_low sees X_high), all selects all parts, and auto selects by name if "
-               "every part has a counterpart. Default: auto.")
+               "file name (X_low sees X_high, or X sees X if no low part is named so), all selects "
+               "all parts, and auto selects by name if every part has a counterpart. Default: "
+               "auto.")
         .group(group);
     add_choice(
         app, "--back-faces", request.bake.back_faces,

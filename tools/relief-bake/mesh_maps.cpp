@@ -281,8 +281,7 @@ BakeRecord record_of(const MeshBakeRequest& request) {
     add_number("--offset", request.bake.offset);
     add_number("--max-distance", request.bake.max_distance);
     if (request.bake.back_faces == BackFaces::take) record["--back-faces"] = "take";
-    if (request.match != PartMatching::automatic)
-        record["--match"] = request.match == PartMatching::name ? "name" : "all";
+    if (request.match != PartMatching::automatic) record["--match"] = enum_name(request.match);
     if (request.bake.map.placement.repeat) record["--outside"] = "repeat";
     if (request.map.dither) record["--dither"] = enum_name(*request.map.dither);
     return record;

@@ -16,6 +16,7 @@
 #include "make_engine.h"
 #include "make_loss.h"
 #include "make_loss_meter.h"
+#include "make_parts.h"
 #include "make_remesh.h"
 #include "make_stages.h"
 #include "make_start.h"
@@ -460,6 +461,7 @@ Summary summary_of(const MakeRequest& request, const Job& job, const MadeAsset& 
                     atlas_text(*asset.atlas, {asset.normal_map.width, asset.normal_map.height}),
                     {{"atlas", atlas_json(*asset.atlas)}});
     }
+    summary.add("parts", part_lines(asset.parts), {{"parts", parts_json(asset.parts)}});
     summary.add("maps", map_lines(made), maps_json(asset));
     summary.add("levels", level_lines(made), {{"levels", json_list(made.levels, level_json)}});
     if (request.limits.any()) {

@@ -307,6 +307,22 @@ std::vector<MakeOption> map_options() {
                  });
          },
          .value = [](const MakeRequest& request) -> Json { return request.asset.samples; }},
+        {.name = "match",
+         .key = "match",
+         .stage = "bake",
+         .heading = maps,
+         .add = [](CLI::App& app, const std::string& option,
+                   MakeRequest& request) -> std::optional<AddedOption> {
+             return add_choice(
+                 app, option, request.asset.match, enum_choices<PartMatching>(),
+                 "What the rays of a part of the asset hit: auto, only the part of the model of "
+                 "the same name, if the model has several; name, the same, and it is an error if "
+                 "a mesh of --from has a part without a counterpart; all, all of the model. "
+                 "Default: auto.");
+         },
+         .value = [](const MakeRequest& request) -> Json {
+             return enum_name(request.asset.match);
+         }},
         {.name = "occlusion-rays",
          .key = "occlusion_rays",
          .stage = "bake",

@@ -15,6 +15,7 @@
 #include "common/model_file.h"
 #include "dense_model.h"
 #include "make_job.h"
+#include "make_parts.h"
 #include "mesh_models.h"
 
 namespace relief::tools {
@@ -221,6 +222,7 @@ struct SourceModels {
     std::vector<std::filesystem::path> files;
     std::vector<MapAppearance> appearances;  ///< By file.
     std::vector<MapModelPart> parts;         ///< Of all files; materials are numbered through.
+    make::NamedParts names;                  ///< Of the triangles of `parts`.
     glm::dvec3 origin{0.0};
 };
 
@@ -246,6 +248,7 @@ void add_model(const std::filesystem::path& file, SourceModels& models, SourceFa
         for (MaterialRange& range : part.mesh.material_ranges) {
             if (range.material) *range.material += static_cast<std::uint32_t>(first);
         }
+        add_named_parts(part, file.stem().string(), BakeSide::high, models.names);
         models.parts.push_back(std::move(part));
     }
     drop_missing_textures(model.appearance, report);
@@ -291,6 +294,7 @@ make::AssetSource read_source(const DenseModel& model, SourceFacts& facts, Findi
     const std::filesystem::path& file = model.files.front();
     make::AssetSource source;
     source.origin = models.origin;
+    source.parts = std::move(models.names);
     add_missing_texcoords(models.parts);
     report_lost_normals(models.parts, report);
     source.mesh = about(file, [&] { return joined(std::move(models.parts)); });

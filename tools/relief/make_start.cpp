@@ -14,6 +14,7 @@
 #include "files.h"
 #include "make_cache.h"
 #include "make_options.h"
+#include "make_parts.h"
 #include "make_stages.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/model.h"
@@ -96,7 +97,9 @@ void check_earlier_files(const StageFiles& files, const Json& record, std::strin
 }
 
 /// Reads a mesh in the space of an origin.
-Mesh read_stage_mesh(const std::filesystem::path& file, const glm::dvec3& origin, Report& report) {
+/// \param names  gets the names of its objects, if it has several
+Mesh read_stage_mesh(const std::filesystem::path& file, const glm::dvec3& origin,
+                     make::NamedParts& names, Report& report) {
     Model model = read_model(file, report);
     glm::dvec3 shift(0.0);
     Mesh mesh;
@@ -112,6 +115,9 @@ Mesh read_stage_mesh(const std::filesystem::path& file, const glm::dvec3& origin
     } else {
         MapModel parts = map_model(std::move(model), ModelSpace::world, report);
         shift = parts.origin - origin;
+        for (const MapModelPart& part : parts.parts)
+            add_named_parts(part, "", BakeSide::low, names);
+        if (names.names.size() < 2) names = {};
         mesh = joined(std::move(parts.parts));
     }
     if (shift != glm::dvec3(0.0)) {
@@ -156,6 +162,7 @@ std::filesystem::path write_stage_record(const std::filesystem::path& folder,
                 record["files"][file.filename().string()] = file_hash(file);
         }
     }
+    record["parts"] = parts_record(asset.parts.of_asset);
     write_json(folder / record_name, record);
     return folder / record_name;
 }
@@ -176,10 +183,16 @@ make::AssetStart read_start(const std::filesystem::path& folder, const std::stri
     const std::filesystem::path file = files.mesh_file(before);
     if (!std::filesystem::exists(file))
         throw failure(file, fmt::format("is missing, but --from {} needs it", stage), fresh);
-    if (record["files"].value(file.filename().string(), "") != file_hash(file))
+    const bool is_edited = record["files"].value(file.filename().string(), "") != file_hash(file);
+    if (is_edited)
         report.add("stage file that was edited", "file", 0,
                    fmt::format("{} replaces the result of its stage", file.string()));
-    start.mesh = about(file, [&] { return read_stage_mesh(file, origin, report); });
+    start.mesh = about(file, [&] { return read_stage_mesh(file, origin, start.parts, report); });
+    if (is_edited) return start;
+    start.is_repaired_source = before == "repair";
+    start.parts = about(folder / record_name,
+                        [&] { return parts_of_record(record.value("parts", Json::object())); });
+    if (start.parts.part_of.size() != start.mesh.triangles.size()) start.parts = {};
     return start;
 }
 

@@ -12,6 +12,7 @@
 #include <map>
 #include <mutex>
 #include <numbers>
+#include <set>
 
 #include "bake/bake_work.h"
 #include "bake/edge_padding.h"
@@ -432,6 +433,15 @@ BakeParts::BakeParts(std::span<const BakePart> parts, const LowSurface& low,
         surfaces_.push_back(
             std::make_unique<SeenSurface>(part.high, own, options, reach, part.name, report));
     }
+    if (!options.parts_occlude || !options.map.layers.occlusion) return;
+    std::set<const Mesh*> known;
+    std::vector<RayMesh> meshes;
+    for (const BakePart& part : parts) {
+        for (const Mesh& mesh : part.high) {
+            if (known.insert(&mesh).second) meshes.push_back({mesh.positions, mesh.triangles});
+        }
+    }
+    occluders_ = std::make_unique<RayScene>(std::move(meshes));
 }
 
 LayerBounds BakeParts::bounds(const BakeLayers& layers) const {

@@ -32,9 +32,33 @@ constexpr std::array unit_pairs = {
     UnitPair{39.370079, "inches", "meters"},      UnitPair{100.0, "centimeters", "meters"},
     UnitPair{304.8, "millimeters", "feet"},       UnitPair{1000.0, "millimeters", "meters"}};
 
+std::string lower_case(std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char letter) {
+        return static_cast<char>(std::tolower(letter));
+    });
+    return text;
+}
+
 std::string pair_name_of(const BakePartName& part, BakeSide side) {
     const std::optional<std::string> name = pair_name(part.object, side);
     return name ? *name : pair_name(part.file, side).value_or("");
+}
+
+/// Groups parts by a function of their names and their side. \return the groups, sorted by name
+template <typename NameOf>
+std::vector<BakeNameGroup> group_by(std::span<const BakePartName> high,
+                                    std::span<const BakePartName> low, const NameOf& name_of) {
+    std::map<std::string, BakeNameGroup> groups;
+    for (std::size_t i = 0; i < high.size(); ++i)
+        groups[name_of(high[i], BakeSide::high)].high.push_back(i);
+    for (std::size_t i = 0; i < low.size(); ++i)
+        groups[name_of(low[i], BakeSide::low)].low.push_back(i);
+    std::vector<BakeNameGroup> sorted;
+    for (auto& [name, group] : groups) {
+        group.name = name;
+        sorted.push_back(std::move(group));
+    }
+    return sorted;
 }
 
 }  // namespace
@@ -53,9 +77,7 @@ std::string detail::unit_cause(double size_ratio) {
 
 std::optional<std::string> pair_name(const std::string& name, BakeSide side) {
     constexpr std::string_view separators = "_-. ";
-    std::string lower = name;
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    const std::string lower = lower_case(name);
     const std::string_view word = side == BakeSide::high ? "high" : "low";
     for (std::size_t at = lower.rfind(word); at != std::string::npos && at > 1;
          at = lower.rfind(word, at - 1)) {
@@ -70,17 +92,13 @@ std::optional<std::string> pair_name(const std::string& name, BakeSide side) {
 
 std::vector<BakeNameGroup> group_by_pair_name(std::span<const BakePartName> high,
                                               std::span<const BakePartName> low) {
-    std::map<std::string, BakeNameGroup> groups;
-    for (std::size_t i = 0; i < high.size(); ++i)
-        groups[pair_name_of(high[i], BakeSide::high)].high.push_back(i);
-    for (std::size_t i = 0; i < low.size(); ++i)
-        groups[pair_name_of(low[i], BakeSide::low)].low.push_back(i);
-    std::vector<BakeNameGroup> sorted;
-    for (auto& [name, group] : groups) {
-        group.name = name;
-        sorted.push_back(std::move(group));
-    }
-    return sorted;
+    return group_by(high, low, pair_name_of);
+}
+
+std::string part_name(const BakePartName& part, BakeSide side) {
+    if (const auto name = pair_name(part.object, side)) return *name;
+    if (!part.object.empty()) return lower_case(part.object);
+    return pair_name(part.file, side).value_or(lower_case(part.file));
 }
 
 std::string likely_cause(const BakeFit& fit) {
@@ -159,16 +177,25 @@ std::vector<BakePartName> names_of(const std::vector<PartObject>& objects) {
     return names;
 }
 
-/// Returns whether the objects of a low model have several pair names; otherwise there is nothing
-/// to pair.
-bool has_several_names(const NamedModel& low) {
+/// Returns how many pair names the objects of a low model have; with one there is nothing to pair.
+std::size_t count_pair_names(const NamedModel& low) {
     std::set<std::string> names;
     for (const MapModelPart& part : low.model->parts) {
         for (const std::string& object : part.objects) {
             if (const auto name = pair_name(object, BakeSide::low)) names.insert(*name);
         }
     }
-    return names.size() > 1;
+    return names.size();
+}
+
+/// Groups objects by their names in lower case if there are several, all with counterparts;
+/// otherwise there are no groups.
+std::vector<BakeNameGroup> group_by_equal_names(std::span<const BakePartName> high,
+                                                std::span<const BakePartName> low) {
+    std::vector<BakeNameGroup> groups = group_by(
+        high, low, [](const BakePartName& part, BakeSide) { return lower_case(part.object); });
+    if (groups.size() < 2 || !std::ranges::all_of(groups, &BakeNameGroup::is_pair)) groups.clear();
+    return groups;
 }
 
 /// The names without a counterpart, if there are also names with one.
@@ -194,15 +221,19 @@ std::vector<std::uint32_t> first_triangles(const MapModel& model) {
 
 ModelPairs pair_parts(std::span<const NamedModel> high, const NamedModel& low,
                       PartMatching matching) {
-    if (matching == PartMatching::all ||
-        (matching == PartMatching::automatic && !has_several_names(low)))
-        return {};
+    if (matching == PartMatching::all) return {};
+    const std::size_t pair_names = count_pair_names(low);
+    if (matching == PartMatching::automatic && pair_names == 1) return {};
     std::vector<PartObject> high_objects, low_objects;
     for (std::size_t i = 0; i < high.size(); ++i)
         add_objects(high[i], i, high_objects);
     add_objects(low, 0, low_objects);
-    const std::vector<BakeNameGroup> groups =
-        group_by_pair_name(names_of(high_objects), names_of(low_objects));
+    const std::vector<BakePartName> high_names = names_of(high_objects);
+    const std::vector<BakePartName> low_names = names_of(low_objects);
+    std::vector<BakeNameGroup> groups;
+    if (pair_names == 0) groups = group_by_equal_names(high_names, low_names);
+    if (matching == PartMatching::automatic && pair_names == 0 && groups.empty()) return {};
+    if (groups.empty()) groups = group_by_pair_name(high_names, low_names);
     ModelPairs result;
     if (matching == PartMatching::automatic &&
         !std::ranges::all_of(groups, &BakeNameGroup::is_pair)) {

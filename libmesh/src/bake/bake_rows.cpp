@@ -187,7 +187,8 @@ class Piece {
             if (points_[i].hit.is_hit())
                 hits.push_back({points_[i].hit, samples_[i].texel, samples_[i].index});
         }
-        counts_.occlusion_rays += layers_->add(surface_->high, hits, report_);
+        counts_.occlusion_rays +=
+            layers_->add(surface_->high, work_.parts.occluders(*surface_), hits, report_);
     }
 
     void add_hit(const Sample& sample, const ProjectedPoint& point) {

@@ -97,6 +97,11 @@ class BakeParts {
         return *surfaces_[part_of_triangle_.empty() ? 0 : part_of_triangle_[triangle]];
     }
 
+    /// Returns what blocks the rays of occlusion from points of a surface.
+    [[nodiscard]] const RayScene& occluders(const SeenSurface& surface) const {
+        return occluders_ ? *occluders_ : surface.high.scene();
+    }
+
     [[nodiscard]] BakeDistances largest_distances() const;
     /// Returns the comparison of the boxes around all parts.
     [[nodiscard]] BakeFit fit() const;
@@ -106,6 +111,7 @@ class BakeParts {
   private:
     std::vector<std::unique_ptr<SeenSurface>> surfaces_;
     std::vector<std::uint32_t> part_of_triangle_;  ///< Empty if there is only one part.
+    std::unique_ptr<RayScene> occluders_;          ///< All meshes, with BakeOptions::parts_occlude.
 };
 
 /// Measures the agreement of the surfaces with a few rays, and searches for a correction if they do

@@ -217,8 +217,8 @@ LayerBake::LayerBake(const BakeLayers& layers, std::size_t first_texel, std::siz
     if (layers.emission) emission_.resize(texels);
 }
 
-std::size_t LayerBake::add(const HighSurface& high, std::span<const LayerHit> hits,
-                           Report& report) {
+std::size_t LayerBake::add(const HighSurface& high, const RayScene& occluders,
+                           std::span<const LayerHit> hits, Report& report) {
     for (const LayerHit& here : hits) {
         ++hits_[here.texel];
         if (layers_.curvature) curvature_[here.texel] += high.curvature(here.hit);
@@ -231,11 +231,11 @@ std::size_t LayerBake::add(const HighSurface& high, std::span<const LayerHit> hi
                 glm::dvec3(layers_.position_from_mesh * glm::dvec4(high.position(here.hit), 1.0));
         }
     }
-    return occlusion_ ? add_occlusion(high, hits, report) : 0;
+    return occlusion_ ? add_occlusion(high, occluders, hits, report) : 0;
 }
 
-std::size_t LayerBake::add_occlusion(const HighSurface& high, std::span<const LayerHit> hits,
-                                     Report& report) {
+std::size_t LayerBake::add_occlusion(const HighSurface& high, const RayScene& occluders,
+                                     std::span<const LayerHit> hits, Report& report) {
     std::vector<OcclusionPlace> points;
     Report ignored;  // The normal layer reports the same findings.
     Report& normal_report = layers_.normals ? ignored : report;
@@ -246,7 +246,7 @@ std::size_t LayerBake::add_occlusion(const HighSurface& high, std::span<const La
                           side * high.smooth_normal(here.hit, texel, normal_report),
                           side * high.face_normal(here.hit), texel, here.sample});
     }
-    const std::vector<double> shares = occlusion_->open_shares(high.scene(), points, report);
+    const std::vector<double> shares = occlusion_->open_shares(occluders, points, report);
     for (std::size_t i = 0; i < hits.size(); ++i)
         open_[hits[i].texel] += shares[i];
     return points.size() * occlusion_->rays_of_sample();

@@ -96,15 +96,17 @@ class LayerBake {
     LayerBake(const BakeLayers& layers, std::size_t first_texel, std::size_t texels,
               std::uint32_t min_samples);
 
-    /// Adds hits. \return the number of occlusion rays
-    std::size_t add(const HighSurface& high, std::span<const LayerHit> hits, Report& report);
+    /// Adds hits. \param occluders  what blocks the rays of occlusion
+    /// \return the number of occlusion rays
+    std::size_t add(const HighSurface& high, const RayScene& occluders,
+                    std::span<const LayerHit> hits, Report& report);
 
     /// Writes the means of a texel to index `at` of the rows.
     void store(std::size_t texel, const BakedRows& rows, std::size_t at) const;
 
   private:
-    std::size_t add_occlusion(const HighSurface& high, std::span<const LayerHit> hits,
-                              Report& report);
+    std::size_t add_occlusion(const HighSurface& high, const RayScene& occluders,
+                              std::span<const LayerHit> hits, Report& report);
 
     const BakeLayers& layers_;
     std::size_t first_texel_;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
@@ -18,6 +19,7 @@
 #include "relief/export.h"
 #include "relief/make/remeshing.h"
 #include "relief/mesh/bake.h"
+#include "relief/mesh/bake_check.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image.h"
@@ -31,11 +33,18 @@
 namespace RELIEF_API relief {
 namespace make {
 
+/// The names of the parts of a mesh. Parts of equal names are one.
+struct NamedParts {
+    std::vector<std::string> names;
+    std::vector<std::uint32_t> part_of;  ///< For each triangle of the mesh, an index of `names`.
+};
+
 /// A dense mesh with its materials.
 struct AssetSource {
     std::string name;        ///< Of the asset's mesh and material.
     Mesh mesh;               ///< Valid (mesh.h). Without normals, they are computed.
     glm::dvec3 origin{0.0};  ///< Of the positions (mesh_file.h).
+    NamedParts parts{};      ///< Without names, the mesh is one part.
     /// Indexed by the material ranges of the mesh.
     std::vector<HighMaterial> materials;
     /// The material of triangles without a material.
@@ -52,6 +61,11 @@ struct AssetStart {
     /// compute.
     Mesh mesh;
     bool is_remeshed = false;  ///< It comes from a closed surface around the source.
+    /// For "decimate": the mesh is what "repair" gave, so that its parts are those of the source.
+    bool is_repaired_source = false;
+    /// The parts of the mesh, whose names are those of the source. Without names they are not
+    /// known.
+    NamedParts parts{};
 };
 
 struct AssetOptions {
@@ -78,6 +92,9 @@ struct AssetOptions {
     bool occlusion = true;    ///< Bakes an occlusion map of a quarter of the size.
     int occlusion_rays = 32;  ///< Per texel of the occlusion map.
     int samples = 1;          ///< Per texel (BakeMapOptions::samples).
+    /// Which parts of the source the rays of a part of the asset can hit (PartDecision). `name` is
+    /// an error, and `automatic` means `all`, if a part of AssetStart has no counterpart.
+    PartMatching match = PartMatching::automatic;
     /// Further layers, of 16 bits: height, curvature and position.
     std::vector<LayerKind> layers;
     int normal_bits = 8;  ///< Of the normal map: 8 or 16.
@@ -122,6 +139,22 @@ struct AssetLayer {
     Image image;
 };
 
+/// A part of an asset: parts of the source that touch each other are one part.
+struct AssetPart {
+    std::string name;  ///< "lid", "base + hinge"
+    std::size_t source_triangles = 0;
+    std::size_t triangles = 0;
+};
+
+/// Whether the rays of each part of an asset hit only the part of the source of the same name.
+/// Rays of occlusion hit all parts.
+struct PartDecision {
+    bool is_matched = false;
+    std::string reason;            ///< Why parts are not matched; empty if they are.
+    std::vector<AssetPart> parts;  ///< If they are matched.
+    NamedParts of_asset;           ///< The parts of Asset::mesh; without names they are not known.
+};
+
 /// An asset in memory.
 struct Asset {
     std::string name;
@@ -130,6 +163,7 @@ struct Asset {
     std::size_t source_triangles = 0;      ///< After repair.
     std::optional<RemeshDecision> remesh;  ///< If there is a stage "remesh".
     std::optional<AtlasStats> atlas;       ///< Absent with AssetOptions::keep_texcoords.
+    PartDecision parts;
     BakeResult bake;
     BakeAgreement agreement;
     // The other maps of the material have 8 bits. A property that is the same everywhere has no
@@ -190,7 +224,8 @@ VaryingProperties varying_properties(const Mesh& mesh, const AssetSource& source
 /// - *unwrap* divides at hard edges and packs the charts into the map (unwrap.h).
 /// - *frames* computes normals, hard at the crease angle, and MikkTSpace tangents (frames.h).
 /// - *bake* casts rays onto the source (bake.h). One pass gives normals, colors with opacity,
-///   roughness, metalness, emission and further layers; occlusion has a quarter of their size.
+///   roughness, metalness, emission and further layers; occlusion has a quarter of their size. The
+///   rays of a named part hit only this part of the source (PartDecision).
 ///   Occlusion textures of the source are combined with it: the darker one counts.
 ///
 /// \return the same bytes for any number of threads

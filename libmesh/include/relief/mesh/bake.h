@@ -240,6 +240,9 @@ struct BakeOptions {
     /// Accepts high and low meshes whose bounding boxes differ in size by more than max_size_ratio;
     /// see BakeMismatch.
     bool allow_size_mismatch = false;
+    /// For parts that do not see each other: whether the high meshes of all parts block the rays of
+    /// occlusion. Otherwise only those of the part do.
+    bool parts_occlude = false;
     /// The expected number of maps. For many maps, the baker spends more time on preparation. The
     /// results do not depend on it.
     std::size_t map_count = 1;

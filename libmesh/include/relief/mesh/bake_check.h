@@ -44,6 +44,10 @@ struct BakePartName {
     std::string file;    ///< The stem of its file; used if the object's name gives no pair name.
 };
 
+/// Returns the name of a part, in lower case: the pair name of its object, else the name of its
+/// object, else the pair name of its file, else the name of its file. Empty if it has no name.
+std::string part_name(const BakePartName& part, BakeSide side);
+
 /// The parts with one pair name.
 struct BakeNameGroup {
     std::string name;                    ///< Empty: parts without a pair name.
@@ -63,6 +67,10 @@ enum class PartMatching {
     name,       ///< By name.
     all,        ///< All high parts.
 };
+
+template <>
+inline constexpr auto enum_names<PartMatching> = std::to_array<EnumName<PartMatching>>(
+    {{"auto", PartMatching::automatic}, {"name", PartMatching::name}, {"all", PartMatching::all}});
 
 /// A file and its parts.
 struct NamedModel {
@@ -94,7 +102,9 @@ struct ModelPairs {
 };
 
 /// Pairs parts by pair_name(). A part is named by its object (glTF: node; OBJ: o, else g) if that
-/// has a pair name, else by its file. High parts without a counterpart are counted.
+/// has a pair name, else by its file. If no object of the low model has a pair name, parts are
+/// paired by equal names of objects, whatever their case, if each part has a counterpart. High
+/// parts without a counterpart are counted.
 ModelPairs pair_parts(std::span<const NamedModel> high, const NamedModel& low,
                       PartMatching matching);
 

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The named parts of models, and how they are matched, as text and JSON.
+/// Tests: tests/make/part_matching_test.cpp.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/text.h"
+#include "relief/make/asset.h"
+#include "relief/mesh/bake_check.h"
+#include "relief/mesh/model.h"
+
+namespace relief::tools {
+
+/// Appends the objects of a part of a model, and their triangles.
+/// \param file  the name of parts whose objects have none; may be empty
+void add_named_parts(const MapModelPart& part, const std::string& file, BakeSide side,
+                     make::NamedParts& parts);
+
+/// "3 matched by name: lid, base + hinge, handle"; empty if the model has one part.
+std::vector<std::string> part_lines(const make::PartDecision& decision);
+Json parts_json(const make::PartDecision& decision);
+
+/// Stores parts in a record of stages, and reads them. \throws InvalidInput if it is damaged
+Json parts_record(const make::NamedParts& parts);
+make::NamedParts parts_of_record(const Json& record);
+
+}  // namespace relief::tools
