@@ -25,11 +25,19 @@ constexpr int max_size = 16384;
 
 /// Returns whether triangles are replaced only if that is better.
 bool judges_remeshing(const AssetOptions& options) {
-    return options.remesh == Remeshing::automatic && !options.keep_texcoords && !options.start;
+    return options.remesh == Remeshing::automatic && !options.keep_texcoords &&
+           (!options.start || options.start->stage == "remesh");
+}
+
+/// Returns whether triangles are replaced in any case.
+bool always_remeshes(const AssetOptions& options) {
+    return options.remesh == Remeshing::always &&
+           (!options.start || options.start->stage == "remesh");
 }
 
 /// Stages that can be left out, and a last one that cannot.
-constexpr std::array<std::string_view, 4> start_order = {"decimate", "unwrap", "frames", "bake"};
+constexpr std::array<std::string_view, 5> start_order = {"remesh", "decimate", "unwrap", "frames",
+                                                         "bake"};
 
 /// Returns whether AssetOptions::start leaves out a stage.
 bool is_left_out(const AssetOptions& options, std::string_view stage) {
@@ -42,6 +50,8 @@ bool is_left_out(const AssetOptions& options, std::string_view stage) {
 void check(const AssetStart& start, bool keeps_texcoords) {
     if (std::ranges::find(start_order, start.stage) == start_order.end())
         throw InvalidInput(fmt::format("no job can continue at a stage \"{}\"", start.stage));
+    if (start.stage == "remesh" && keeps_texcoords)
+        throw InvalidInput("a job that keeps texture coordinates cannot continue at \"remesh\"");
     if (start.stage == "unwrap" && keeps_texcoords)
         throw InvalidInput("a job that keeps texture coordinates cannot continue at \"unwrap\"");
     validate(start.mesh);
@@ -100,6 +110,7 @@ class Maker {
     void judge(Report& report);
     [[nodiscard]] RemeshOptions grid() const;
     void begin(const AssetStart& start);
+    [[nodiscard]] const Mesh& replaceable() const;
     [[nodiscard]] const Mesh& dense_surface() const;
     void find_parts(const FramedMesh& repaired);
     [[nodiscard]] std::vector<std::uint32_t> parts_of_dense_surface() const;
@@ -180,8 +191,9 @@ void Maker::repair(Report& report) {
     }
     asset_.source_triangles = high_.triangles.size();
     if (judges_remeshing(options_)) {
+        const bool is_repaired = options_.repair && !options_.start;
         evidence_.crowded_edges =
-            detail::crowded_edge_share(high_, options_.repair ? &report : nullptr);
+            detail::crowded_edge_share(replaceable(), is_repaired ? &report : nullptr);
     }
 }
 
@@ -251,7 +263,7 @@ RemeshOptions Maker::grid() const {
 /// Replaces the triangles to decimate.
 void Maker::remesh(Report& report) {
     RemeshDecision& decision = asset_.remesh.emplace();
-    closed_ = detail::closed_surface(high_, grid(), decision, report);
+    closed_ = detail::closed_surface(replaceable(), grid(), decision, report);
     decision.is_remeshed = true;
     decision.reason = "it was requested";
 }
@@ -260,8 +272,8 @@ void Maker::remesh(Report& report) {
 /// it.
 void Maker::judge(Report& report) {
     RemeshDecision& decision = asset_.remesh.emplace();
-    decision.criteria = detail::remesh_criteria(high_, evidence_);
-    closed_ = detail::better_surface(high_, grid(), decision, report);
+    decision.criteria = detail::remesh_criteria(replaceable(), evidence_);
+    closed_ = detail::better_surface(replaceable(), grid(), decision, report);
 }
 
 /// Moves the sides of doubled walls apart, so that rays meet the right one and each side has charts
@@ -279,10 +291,14 @@ void Maker::separate_sides(Report& report) {
                "has sides that are a millionth of its size apart");
 }
 
+/// Returns the triangles that a closed surface may replace.
+const Mesh& Maker::replaceable() const {
+    return options_.start ? options_.start->mesh : high_;
+}
+
 /// Returns the triangles to decimate.
 const Mesh& Maker::dense_surface() const {
-    if (closed_) return *closed_;
-    return options_.start ? options_.start->mesh : high_;
+    return closed_ ? *closed_ : replaceable();
 }
 
 /// Takes the mesh of a stage that is left out.
@@ -307,7 +323,7 @@ void Maker::begin(const AssetStart& start) {
                 low_parts_.push_back(numbers[part]);
         }
     }
-    if (start.stage == "decimate") return;
+    if (start.stage == "remesh" || start.stage == "decimate") return;
     asset_.mesh = start.mesh;
     asset_.mesh.name = source_.name;
     const bool has_sides = options_.repair && !start.is_remeshed &&
@@ -455,8 +471,7 @@ Asset Maker::run() {
     asset_.origin = source_.origin;
     run_stage("repair", &Maker::repair);
     if (options_.start) begin(*options_.start);
-    if (options_.remesh == Remeshing::always && !options_.start)
-        run_stage("remesh", &Maker::remesh);
+    if (always_remeshes(options_)) run_stage("remesh", &Maker::remesh);
     reduce();
     if (judges_remeshing(options_)) {
         run_stage("remesh", &Maker::judge);
@@ -471,7 +486,7 @@ Asset Maker::run() {
 
 std::vector<std::string> stages_of(const AssetOptions& options) {
     std::vector<std::string> stages = {"repair"};
-    if (options.remesh == Remeshing::always && !options.start) stages.emplace_back("remesh");
+    if (always_remeshes(options)) stages.emplace_back("remesh");
     stages.emplace_back("decimate");
     if (!options.keep_texcoords) stages.emplace_back("unwrap");
     if (judges_remeshing(options)) stages.emplace_back("remesh");

@@ -351,7 +351,7 @@ def make(
     max_error_kind: Literal["mean", "rms", "p99", "max"] = "p99",
     max_picture_error: float | None = None,
     keep_stages: str | os.PathLike[str] | None = None,
-    start: Literal["decimate", "unwrap", "frames", "bake"] | None = None,
+    start: Literal["remesh", "decimate", "unwrap", "frames", "bake", "write"] | None = None,
 ) -> dict[str, Any]:
     """Make an asset with maps from the file of a dense model, as `relief make` does (docs/make.md).
 

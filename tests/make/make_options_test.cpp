@@ -151,7 +151,8 @@ TEST(MakeOptions, MakeTheFilesOfTheirStagesStale) {
             std::string error;
             Report report;
             try {
-                read_start(workplace / "s", stage, request, {}, glm::dvec3(0.0), report);
+                read_start(read_stage_record(workplace / "s"), workplace / "s", stage, request, {},
+                           glm::dvec3(0.0), report);
             } catch (const FileError& caught) {
                 error = caught.what();  // The files are no glTF.
             }

@@ -230,6 +230,9 @@ void check_start(const MakeCommand& command) {
                          "leave out --max-error and --max-picture-error");
     if (request.from == "unwrap" && request.asset.keep_texcoords)
         throw UsageError(option + ": --keep-uvs leaves out this stage", "continue at frames");
+    if (request.from == "remesh" &&
+        (request.asset.keep_texcoords || request.asset.remesh == make::Remeshing::never))
+        throw UsageError(option + ": nothing is remeshed", "continue at decimate");
 }
 
 /// Reads the job file. \throws UsageError if there are options that it has for each asset
@@ -281,7 +284,8 @@ ExitCode make(const CLI::App& app, const MakeCommand& command) {
 }
 
 Choices<std::string> start_choices() {
-    return {{"decimate", "decimate"}, {"unwrap", "unwrap"}, {"frames", "frames"}, {"bake", "bake"}};
+    return {{"remesh", "remesh"}, {"decimate", "decimate"}, {"unwrap", "unwrap"},
+            {"frames", "frames"}, {"bake", "bake"},         {"write", "write"}};
 }
 
 void add_make_options(CLI::App& app, MakeCommand& command) {
@@ -313,7 +317,8 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
     add_choice<std::string>(
         app, "--from", start_choices(),
         "Continue at this stage with the files of --keep-stages, which may have been edited; maps "
-        "still show the model. Files that are missing or stale are an error.",
+        "still show the model. write: with the maps, of which edited ones go into the asset. Files "
+        "that are missing or stale are an error.",
         [&command](const std::string& stage) { command.request.from = stage; })
         .group(output);
     add_switch(app, "--force", command.force,

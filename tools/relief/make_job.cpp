@@ -13,6 +13,7 @@
 
 #include "common/model_file.h"
 #include "file_replacement.h"
+#include "make_baked.h"
 #include "make_engine.h"
 #include "make_loss.h"
 #include "make_loss_meter.h"
@@ -246,8 +247,13 @@ void FileMaker::read() {
     made_.inputs = names_of(opened.files());
     if (request_.from.empty()) return;
     Report report;
-    options_.start = read_start(*request_.stages_folder, request_.from, request_, made_.inputs,
-                                source_.origin, report);
+    const Json record = read_stage_record(*request_.stages_folder);
+    options_.start = read_start(record, *request_.stages_folder, request_.from, request_,
+                                made_.inputs, source_.origin, report);
+    if (request_.from == "write")
+        made_.asset = read_baked(request_, source_, std::move(*options_.start), record, report);
+    if (options_.start->mesh.triangles.empty() && request_.from == "remesh")
+        options_.start.reset();  // All stages give what they gave before.
     made_.findings.add("read", report);
 }
 
@@ -266,7 +272,9 @@ void FileMaker::make_once() {
             made_.files.push_back(kept->write_mesh(stage, mesh, source_.origin, of_kept));
         };
     }
-    if (only_codes_differ_ && !kept) {
+    if (request_.from == "write") {
+        // The asset was read.
+    } else if (only_codes_differ_ && !kept) {
         // The other stages would compute the same again.
         made_.asset.normal_map = *std::exchange(made_.asset.baked_normals, std::nullopt);
     } else {
@@ -278,8 +286,10 @@ void FileMaker::make_once() {
     run_stage("write", [&] {
         Report report;
         if (kept) {
-            for (const std::filesystem::path& file : kept->write_maps(made_.asset))
-                made_.files.push_back(file);
+            if (request_.from != "write") {
+                for (const std::filesystem::path& file : kept->write_maps(made_.asset))
+                    made_.files.push_back(file);
+            }
             made_.files.push_back(
                 write_stage_record(*request_.stages_folder, made_.asset, request_, made_.inputs));
         }

@@ -119,7 +119,8 @@ std::vector<PlannedStage> plan_of(const MakeRequest& request, const make::AssetS
     plan.push_back({"verify", "read the asset back and compare it", costs.write * texels});
     if (!request.from.empty()) {
         std::erase_if(plan, [&](const PlannedStage& stage) {
-            return stage.name == "remesh" ||
+            if (stage.name == "remesh") return request.from != "remesh";
+            return (stage.name == "repair" && request.from == "write") ||
                    (stage.name != "repair" && stage.name != "write" && stage.name != "verify" &&
                     stage_number(stage.name) < stage_number(request.from));
         });

@@ -25,6 +25,10 @@ int stage_number(std::string_view stage) {
     return 1 + static_cast<int>(std::ranges::find(stage_order, stage) - stage_order.begin());
 }
 
+std::string map_file_name(std::string_view map) {
+    return fmt::format("{:02}-{}-{}.png", stage_number(bake_stage), bake_stage, map);
+}
+
 StageFiles::StageFiles(const std::filesystem::path& folder, const make::AssetOptions& options)
     : folder_(folder), stages_(make::stages_of(options)) {
     maps_ = {"normal", "occlusion", "color", "orm", "emission"};
@@ -42,7 +46,7 @@ std::vector<std::filesystem::path> StageFiles::all() const {
         if (stage != bake_stage) files.push_back(file_of(stage, ".glb"));
     }
     for (const std::string& map : maps_)
-        files.push_back(file_of(bake_stage, fmt::format("-{}.png", map)));
+        files.push_back(folder_ / map_file_name(map));
     return files;
 }
 
@@ -61,7 +65,7 @@ std::filesystem::path StageFiles::write_mesh(std::string_view stage, const Mesh&
 std::vector<std::filesystem::path> StageFiles::write_maps(const make::Asset& asset) const {
     std::vector<std::filesystem::path> files;
     for (const make::AssetMap& map : make::maps_of(asset)) {
-        files.push_back(file_of(bake_stage, fmt::format("-{}.png", map.name)));
+        files.push_back(folder_ / map_file_name(map.name));
         write_image(files.back(), *map.image, map.metadata);
     }
     return files;

@@ -18,6 +18,9 @@ namespace relief::tools {
 /// Returns the number of a stage in the names of its files, from 1 on.
 int stage_number(std::string_view stage);
 
+/// "06-bake-normal.png", for a name of make::maps_of().
+std::string map_file_name(std::string_view map);
+
 /// The files in a folder: a mesh for each stage of make::stages_of(), "03-decimate.glb", and the
 /// maps with the names of make::maps_of(), "06-bake-normal.png". A stage has the same number in all
 /// jobs. "02-remesh.glb" exists only if the mesh was remeshed.

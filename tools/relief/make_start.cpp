@@ -12,6 +12,7 @@
 #include "common/command.h"
 #include "common/model_file.h"
 #include "files.h"
+#include "make_baked.h"
 #include "make_cache.h"
 #include "make_options.h"
 #include "make_parts.h"
@@ -28,14 +29,15 @@ constexpr const char* fresh = "run without --from";
 /// The stage whose file is the mesh with which a stage begins.
 std::string stage_before(const std::string& stage, const make::AssetOptions& options,
                          bool is_remeshed) {
-    if (stage == "bake") return "frames";
+    if (stage == "bake" || stage == "write") return "frames";
     if (stage == "frames") return options.keep_texcoords ? "decimate" : "unwrap";
     if (stage == "unwrap") return "decimate";
-    return is_remeshed ? "remesh" : "repair";
+    return is_remeshed && stage != "remesh" ? "remesh" : "repair";
 }
 
-/// Returns stages.json. \throws FileError if it is missing or damaged
-Json read_record(const std::filesystem::path& folder) {
+}  // namespace
+
+Json read_stage_record(const std::filesystem::path& folder) {
     const std::filesystem::path file = folder / record_name;
     if (!std::filesystem::exists(file))
         throw failure(file, "is missing, so that the files of --keep-stages cannot be checked",
@@ -57,6 +59,8 @@ Json read_record(const std::filesystem::path& folder) {
     }
     return record;
 }
+
+namespace {
 
 /// \throws FileError if the model or an option of a stage up to `last` has changed
 void check_fresh(const std::filesystem::path& folder, const Json& record, std::string_view last,
@@ -86,7 +90,7 @@ void check_fresh(const std::filesystem::path& folder, const Json& record, std::s
 
 /// \throws FileError if a file before `last` was edited, but not used
 void check_earlier_files(const StageFiles& files, const Json& record, std::string_view last) {
-    for (const std::string_view stage : {"repair", "remesh", "decimate", "unwrap"}) {
+    for (const std::string_view stage : {"repair", "remesh", "decimate", "unwrap", "frames"}) {
         if (stage_number(stage) >= stage_number(last)) break;
         const std::filesystem::path file = files.mesh_file(stage);
         const auto hash = record["files"].find(file.filename().string());
@@ -154,7 +158,7 @@ std::filesystem::path write_stage_record(const std::filesystem::path& folder,
         record["files"][file.filename().string()] = file_hash(file);
     }
     if (options.start) {  // Files of the stages that did not run.
-        for (const std::string_view stage : {"remesh", "decimate", "unwrap"}) {
+        for (const std::string_view stage : {"remesh", "decimate", "unwrap", "frames"}) {
             const std::filesystem::path file = files.mesh_file(stage);
             if (stage == "remesh" && !is_remeshed) continue;
             if (stage_number(stage) < stage_number(options.start->stage) &&
@@ -163,23 +167,25 @@ std::filesystem::path write_stage_record(const std::filesystem::path& folder,
         }
     }
     record["parts"] = parts_record(asset.parts.of_asset);
+    record["bake"] = baked_record(folder, asset);
     write_json(folder / record_name, record);
     return folder / record_name;
 }
 
-make::AssetStart read_start(const std::filesystem::path& folder, const std::string& stage,
-                            const MakeRequest& request,
+make::AssetStart read_start(const Json& record, const std::filesystem::path& folder,
+                            const std::string& stage, const MakeRequest& request,
                             const std::vector<std::filesystem::path>& inputs,
                             const glm::dvec3& origin, Report& report) {
     const make::AssetOptions& options = request.asset;
-    const Json record = read_record(folder);
     make::AssetStart start;
     start.stage = stage;
     start.is_remeshed = record["remeshed"] == true;
     const std::string before = stage_before(stage, options, start.is_remeshed);
-    check_fresh(folder, record, before, request, inputs);
+    // The maps depend on all options of the bake, and on the mesh before it.
+    const std::string last = stage == "write" ? "bake" : before;
+    check_fresh(folder, record, last, request, inputs);
     const StageFiles files(folder, options);
-    check_earlier_files(files, record, before);
+    check_earlier_files(files, record, last);
     const std::filesystem::path file = files.mesh_file(before);
     if (!std::filesystem::exists(file))
         throw failure(file, fmt::format("is missing, but --from {} needs it", stage), fresh);
@@ -187,9 +193,10 @@ make::AssetStart read_start(const std::filesystem::path& folder, const std::stri
     if (is_edited)
         report.add("stage file that was edited", "file", 0,
                    fmt::format("{} replaces the result of its stage", file.string()));
+    if (stage == "remesh" && !is_edited) return start;
     start.mesh = about(file, [&] { return read_stage_mesh(file, origin, start.parts, report); });
     if (is_edited) return start;
-    start.is_repaired_source = before == "repair";
+    start.is_repaired_source = stage == "decimate" && before == "repair";
     start.parts = about(folder / record_name,
                         [&] { return parts_of_record(record.value("parts", Json::object())); });
     if (start.parts.part_of.size() != start.mesh.triangles.size()) start.parts = {};

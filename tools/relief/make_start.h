@@ -23,14 +23,19 @@ std::filesystem::path write_stage_record(const std::filesystem::path& folder,
                                          const make::Asset& asset, const MakeRequest& request,
                                          const std::vector<std::filesystem::path>& inputs);
 
-/// Reads the mesh with which a stage begins.
+/// Returns stages.json. \throws FileError if it is missing or damaged
+Json read_stage_record(const std::filesystem::path& folder);
+
+/// Reads the mesh with which a stage begins; for "write", the mesh of the maps (make_baked.h).
 ///
+/// \param record  read_stage_record()
 /// \param origin  of the positions of the source
 /// \param report  counts a file that was edited
-/// \throws FileError if the file or stages.json is missing, or if the files are stale: the model or
+/// \return for "remesh", without triangles if the file was not edited: nothing is left out then
+/// \throws FileError if the file is missing, or if the files are stale: the model or
 ///         an option of an earlier stage has changed, or a file of an earlier stage was edited
-make::AssetStart read_start(const std::filesystem::path& folder, const std::string& stage,
-                            const MakeRequest& request,
+make::AssetStart read_start(const Json& record, const std::filesystem::path& folder,
+                            const std::string& stage, const MakeRequest& request,
                             const std::vector<std::filesystem::path>& inputs,
                             const glm::dvec3& origin, Report& report);
 

@@ -56,7 +56,8 @@ struct AssetSource {
 
 /// A mesh with which the stages continue, for example the edited result of a stage.
 struct AssetStart {
-    std::string stage;  ///< "decimate", "unwrap", "frames" or "bake": the first one after "repair".
+    /// "remesh", "decimate", "unwrap", "frames" or "bake": the first one after "repair".
+    std::string stage;
     /// Valid (mesh.h), relative to AssetSource::origin, with the attributes that the stages before
     /// compute.
     Mesh mesh;
@@ -77,7 +78,7 @@ struct AssetOptions {
     Remeshing remesh = Remeshing::automatic;
     int resolution = 256;  ///< Of the grid (RemeshOptions::resolution).
     bool shell = false;    ///< Sheets become shells (RemeshOptions::shell).
-    /// Leaves out "remesh" and the stages before a stage. Maps still show the source.
+    /// Leaves out the stages before a stage, but "repair". Maps still show the source.
     std::optional<AssetStart> start{};
     std::size_t triangles = 5000;  ///< The target number of triangles, at least 1.
     glm::ivec2 size{2048};         ///< Of the maps in texels, 16 to 16384 each.
