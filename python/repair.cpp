@@ -33,11 +33,12 @@ py::tuple py_repaired(const MeshObject& mesh, std::optional<double> weld, bool k
                           array_of<std::uint32_t>(std::move(framed.source_vertex), {size}));
 }
 
-MeshObject py_remeshed(const MeshObject& mesh, int resolution, bool shell,
+MeshObject py_remeshed(const MeshObject& mesh, int resolution, bool shell, const std::string& sign,
                        const FindingList& report) {
     RemeshOptions options;
     options.resolution = resolution;
     options.shell = shell;
+    options.sign = value_of<RemeshSign>(sign, "sign");
     Report findings;
     Mesh result = without_gil([&] { return remeshed(mesh, options, findings); });
     append(findings, report);
@@ -63,11 +64,13 @@ void add_repair(py::module_& module) {
         "with_frames(). Each change is appended to the list `report`.\n\n"
         "Raises InvalidInput for options that are out of range.");
     module.def("remesh", &py_remeshed, arg("mesh"), py::kw_only(), arg("resolution") = 128,
-               arg("shell") = false, arg("report") = py::none(),
+               arg("shell") = false, arg("sign") = "flood", arg("report") = py::none(),
                "Compute a closed manifold surface around the solid that the triangles enclose.\n\n"
                "`resolution` is the number of cells along the longest side, 8 to 1024. With\n"
-               "`shell`, everything within 0.75 cells of a triangle is solid, too. The result has\n"
-               "positions and triangles only.\n\n"
+               "`shell`, everything within 0.75 cells of a triangle is solid, too. `sign` is\n"
+               "\"flood\" (all that cannot be reached from outside is solid) or \"winding\" (all\n"
+               "with a winding number of at least a half). The result has positions and triangles\n"
+               "only.\n\n"
                "Raises InvalidInput for wrong options, or if the triangles enclose nothing.");
 }
 

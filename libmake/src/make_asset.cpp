@@ -257,7 +257,7 @@ void Maker::match_parts(Report& report) {
 }
 
 RemeshOptions Maker::grid() const {
-    return {options_.resolution, options_.shell, options_.execution};
+    return {options_.resolution, options_.shell, options_.sign, options_.execution};
 }
 
 /// Replaces the triangles to decimate.

@@ -336,6 +336,7 @@ def make(
     remesh: Literal["auto", "always", "never"] = "auto",
     resolution: int = 256,
     shell: bool = False,
+    sign: Literal["flood", "winding"] = "flood",
     size: int | tuple[int, int] = 2048,
     padding: int = 8,
     keep_uvs: bool = False,

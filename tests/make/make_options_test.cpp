@@ -37,6 +37,7 @@ const std::map<std::string, Json>& samples() {
                                                     {"remesh", "always"},
                                                     {"resolution", 77},
                                                     {"shell", true},
+                                                    {"sign", "winding"},
                                                     {"size", "64x32"},
                                                     {"padding", 3},
                                                     {"keep-uvs", true},

@@ -144,6 +144,9 @@ class MeshTools(CommandLineCase):
             relief.repair(mesh, two_sided="both")
         self.run_tool("relief-mesh", "remesh", DATA / "vase.obj", out, "--resolution", "24", "--shell", "--normals", "keep")
         self.assert_equal_meshes(relief.remesh(mesh, resolution=24, shell=True), relief.read_mesh(out))
+        self.run_tool("relief-mesh", "remesh", DATA / "vase.obj", out, "--resolution", "24", "--sign", "winding",
+                      "--normals", "keep")
+        self.assert_equal_meshes(relief.remesh(mesh, resolution=24, sign="winding"), relief.read_mesh(out))
         with self.assertRaises(relief.InvalidInput):
             relief.remesh(mesh, resolution=4)
 
@@ -484,7 +487,7 @@ class Assets(unittest.TestCase):
         self.assertEqual(options - arguments, set(), "options that make() lacks")
         self.assertEqual(arguments - options, set(), "arguments that the command lacks")
         words = {option["name"]: option.get("words") for option in command["options"]}
-        for name, option in (("engine", "--for"), ("remesh", "--remesh"), ("match", "--match"), ("max_error_kind", "--max-error-kind"),
+        for name, option in (("engine", "--for"), ("remesh", "--remesh"), ("match", "--match"), ("sign", "--sign"), ("max_error_kind", "--max-error-kind"),
                              ("start", "--from")):
             for word in words[option]:
                 self.assertIn(f"'{word}'", str(self.make_arguments()[name].annotation), name)
@@ -506,8 +509,9 @@ class Assets(unittest.TestCase):
 
     def test_make_passes_its_arguments(self):
         given = {"more_sources": [DATA / "urn-low.obj"], "up": "z", "triangles": 200, "crease": None, "lods": 1,
-                 "repair": False, "remesh": "always", "resolution": 16, "shell": True, "padding": 1, "normal_bits": 16, "samples": 4, "match": "all",
-                 "occlusion_rays": 0, "layers": ["height", "position"], "engine": "unity"}
+                 "repair": False, "remesh": "always", "resolution": 16, "shell": True, "sign": "winding", "padding": 1,
+                 "normal_bits": 16, "samples": 4, "match": "all", "occlusion_rays": 0,
+                 "layers": ["height", "position"], "engine": "unity"}
         with tempfile.TemporaryDirectory() as folder:
             report = relief.make(DATA / "vase.obj", pathlib.Path(folder) / "a.glb", size=(64, 32),
                                  keep_stages=folder + "/s", **given)

@@ -49,6 +49,7 @@ ExitCode remesh_model(const CLI::App& app, const RemeshCommand& command) {
     return reshape(app, command.request, change, measuring_of(command.request),
                    {{"resolution", command.options.resolution},
                     {"shell", command.options.shell},
+                    {"sign", enum_name(command.options.sign)},
                     {"normals", enum_name(command.request.normals)},
                     {"measure", name_of(measuring_of(command.request), measuring_words)}},
                    std::nullopt, true);
@@ -73,6 +74,12 @@ void add_remesh_options(CLI::App& app, RemeshCommand& command) {
                "cells thick, and solids grow by 0.75 cells. Default: only what triangles enclose "
                "is solid, and sheets vanish.")
         .group(shape);
+    add_choice(app, "--sign", command.options.sign, enum_choices<RemeshSign>(),
+               "What is solid: all that cannot be reached from outside (flood); or all with a "
+               "winding number of at least a half, which closes holes of any size, but needs "
+               "consistent orientation (relief-mesh repair) and takes ten times as long "
+               "(winding). Default: flood.")
+        .group(shape);
     add_choice(app, "--measure", command.request.measuring, measuring_words,
                "The distances between IN and OUT: at random samples (quick); also at all vertices "
                "and inside triangles, which takes several times as long (full); or none. Default: "
@@ -83,7 +90,9 @@ void add_remesh_options(CLI::App& app, RemeshCommand& command) {
                   "relief-mesh remesh data/vase.obj out/vase-shell.obj --resolution 64 --shell "
                   "--measure full",
                   "relief-mesh remesh data/vase.obj out/vase-coarse.ply --resolution 24 "
-                  "--normals flat --report out/vase-remesh.json"});
+                  "--normals flat --report out/vase-remesh.json",
+                  "relief-mesh remesh data/vase.obj out/vase-closed.ply --resolution 48 --sign "
+                  "winding"});
 }
 
 }  // namespace

@@ -229,6 +229,20 @@ std::vector<MakeOption> shape_options() {
          },
          .value = [](const MakeRequest& request) -> Json { return request.asset.shell; },
          .useless = not_remeshed},
+        {.name = "sign",
+         .key = "sign",
+         .stage = "remesh",
+         .heading = shape,
+         .add = [](CLI::App& app, const std::string& option,
+                   MakeRequest& request) -> std::optional<AddedOption> {
+             return add_choice(
+                 app, option, request.asset.sign, enum_choices<RemeshSign>(),
+                 "With --remesh, what is solid: all that cannot be reached from outside (flood), "
+                 "or all with a winding number of at least a half, which closes holes of any size "
+                 "(winding). Default: flood.");
+         },
+         .value = [](const MakeRequest& request) -> Json { return enum_name(request.asset.sign); },
+         .useless = not_remeshed},
     };
 }
 

@@ -242,13 +242,16 @@ class Contouring {
                            std::popcount(cells.mixed[static_cast<std::size_t>(in.z)] & below));
     }
     /// Returns the place and the plane of the surface on an edge between two sides: that which is
-    /// the first one from outside; or the middle, if the surface has a gap there.
+    /// the first one from outside; or that of a gap; or the middle, if the side of a point is only
+    /// known from its neighbors.
     [[nodiscard]] std::pair<glm::dvec3, glm::dvec3> crossing(const glm::ivec3& point,
                                                              int axis) const {
         glm::dvec3 at(point);
         const EdgeHits* hits = grid_.hits(point, axis);
         if (hits == nullptr) {
-            at[axis] += 0.5;
+            const GridGap* gap = grid_.gap(point, axis);
+            at[axis] += gap != nullptr ? gap->at : 0.5;
+            if (gap != nullptr) return {at, gap->normal};
             glm::dvec3 normal(0.0);
             normal[axis] = 1.0;
             return {at, normal};

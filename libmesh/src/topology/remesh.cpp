@@ -58,7 +58,10 @@ Mesh remeshed(const Mesh& mesh, const RemeshOptions& options, Report& report) {
     const ProgressStage stage("remeshing");
     RemeshGrid grid(mesh, options.resolution, report);
     find_hits(grid, options.shell);
-    find_outside(grid, options.shell);
+    if (options.sign == RemeshSign::winding)
+        find_outside_by_winding(grid, options.shell);
+    else
+        find_outside(grid, options.shell);
     ContouredSurface surface = contoured(grid, options.shell);
     if (surface.triangles.empty())
         throw InvalidInput(fmt::format(

@@ -139,9 +139,13 @@ void RemeshGrid::gather_triangles(const Mesh& mesh, Report& report) {
             report.add("triangle with a non-finite corner", "triangle", t, "is ignored");
             continue;
         }
-        // The winding has no influence.
+        // The winding has no influence on positions.
+        const std::array<glm::dvec3, 3> given = triangle.corners;
         std::sort(triangle.corners.begin(), triangle.corners.end(), comes_before);
         const auto& c = triangle.corners;
+        const auto first =
+            static_cast<std::size_t>(std::find(given.begin(), given.end(), c[0]) - given.begin());
+        triangle.is_reversed = given[(first + 1) % 3] != c[1];
         const glm::dvec3 across = glm::cross(c[1] - c[0], c[2] - c[0]);
         const double longest =
             std::max({glm::dot(c[1] - c[0], c[1] - c[0]), glm::dot(c[2] - c[1], c[2] - c[1]),
@@ -235,6 +239,25 @@ const EdgeHits* RemeshGrid::hits(const glm::ivec3& point, int axis) const {
     for (std::size_t i = 0; i < 8 * a + layer; ++i)
         place += static_cast<std::size_t>(std::popcount(brick.crossed[i / 8][i % 8]));
     return &edge_hits[brick.first_hit + place];
+}
+
+const GridGap* RemeshGrid::gap(const glm::ivec3& point, int axis) const {
+    const std::uint64_t key = gap_key(point, axis);
+    const auto found = std::ranges::lower_bound(gaps, key, {}, &GridGap::key);
+    return found != gaps.end() && found->key == key ? &*found : nullptr;
+}
+
+void RemeshGrid::add_brick(const glm::ivec3& place) {
+    brick_index_[place_index(place)] = static_cast<std::int32_t>(bricks.size());
+    Brick& brick = bricks.emplace_back();
+    brick.place = place;
+    brick.first_hit = static_cast<std::uint32_t>(edge_hits.size());
+}
+
+void RemeshGrid::sort_bricks() {
+    std::ranges::sort(bricks, {}, [&](const Brick& brick) { return place_index(brick.place); });
+    for (std::size_t b = 0; b < bricks.size(); ++b)
+        brick_index_[place_index(bricks[b].place)] = static_cast<std::int32_t>(b);
 }
 
 glm::dvec3 nearest_point(const glm::dvec3& p, const std::array<glm::dvec3, 3>& corners) {

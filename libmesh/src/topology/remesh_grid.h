@@ -37,6 +37,7 @@ struct Brick {
 struct GridTriangle {
     std::array<glm::dvec3, 3> corners;  ///< Ascending: the winding has no influence.
     glm::dvec3 normal;                  ///< Unit.
+    bool is_reversed;                   ///< Its winding is not that of `corners`.
     std::uint32_t range;                ///< The material range.
 };
 
@@ -50,6 +51,13 @@ struct Hit {
 struct EdgeHits {
     Hit first;
     Hit last;
+};
+
+/// Where the surface closes a gap between triangles: it crosses an edge without a hit.
+struct GridGap {
+    std::uint64_t key = 0;  ///< RemeshGrid::gap_key()
+    double at = 0.5;        ///< From the lower point, 0 to 1.
+    glm::dvec3 normal{0.0};
 };
 
 class RemeshGrid {
@@ -94,6 +102,18 @@ class RemeshGrid {
     /// Returns the hits of the edge from a point along an axis, or null.
     [[nodiscard]] const EdgeHits* hits(const glm::ivec3& point, int axis) const;
 
+    static std::uint64_t gap_key(const glm::ivec3& point, int axis) {
+        const auto bits = [](int x) { return static_cast<std::uint64_t>(x); };
+        return bits(point.z) << 34 | bits(point.y) << 18 | bits(point.x) << 2 | bits(axis);
+    }
+    /// Returns the gap on the edge from a point along an axis, or null.
+    [[nodiscard]] const GridGap* gap(const glm::ivec3& point, int axis) const;
+
+    /// Adds a brick without triangles at the end. sort_bricks() must follow.
+    void add_brick(const glm::ivec3& place);
+    void sort_bricks();
+
+    std::vector<GridGap> gaps;                ///< In the order of their keys.
     std::vector<Brick> bricks;                ///< In the order of their places.
     std::vector<std::uint8_t> place_reached;  ///< By place, for places without a brick.
     std::vector<EdgeHits> edge_hits;
@@ -115,8 +135,12 @@ class RemeshGrid {
 /// surroundings of triangles, whose points are marked as near.
 void find_hits(RemeshGrid& grid, bool shell);
 
-/// Decides which points are outside.
+/// Decides which points are outside: all that are reached from outside.
 void find_outside(RemeshGrid& grid, bool shell);
+
+/// Decides which points are outside: those with an absolute winding number below a half. Bricks and
+/// gaps are added where the surface is between triangles.
+void find_outside_by_winding(RemeshGrid& grid, bool shell);
 
 /// The distance from triangles that is solid in a shell, in cells.
 constexpr double shell_distance = 0.75;

@@ -25,6 +25,7 @@
 #include "relief/mesh/image.h"
 #include "relief/mesh/material.h"
 #include "relief/mesh/mesh.h"
+#include "relief/mesh/remesh.h"
 #include "relief/mesh/repair.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/topology.h"
@@ -78,6 +79,8 @@ struct AssetOptions {
     Remeshing remesh = Remeshing::automatic;
     int resolution = 256;  ///< Of the grid (RemeshOptions::resolution).
     bool shell = false;    ///< Sheets become shells (RemeshOptions::shell).
+    /// What is solid (RemeshOptions::sign).
+    RemeshSign sign = RemeshSign::flood;
     /// Leaves out the stages before a stage, but "repair". Maps still show the source.
     std::optional<AssetStart> start{};
     std::size_t triangles = 5000;  ///< The target number of triangles, at least 1.
