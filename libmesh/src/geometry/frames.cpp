@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -22,15 +23,96 @@
 #include "geometry/triangle_stacks.h"
 #include "geometry/value_order.h"
 #include "geometry/weld.h"
+#include "large_memory.h"
+#include "parallel.h"
 #include "progress_stage.h"
+#include "relaxed_store.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/tangents.h"
+#include "work_array.h"
 
 namespace relief {
 using namespace relief::detail;
 
 namespace {
+
+/// One corner of each vertex, and the vertices with corners that have another value.
+struct CornerSurvey {
+    std::vector<Corner> any_corner;          ///< no_corner for isolated vertices.
+    std::vector<std::uint8_t> is_differing;  ///< By vertex, 1 if values differ.
+    bool any_differing = false;
+};
+
+/// \param values  three per triangle
+template <typename T>
+CornerSurvey survey_corners(std::size_t vertex_count, std::span<const glm::uvec3> triangles,
+                            std::span<const T> values) {
+    constexpr std::size_t grain = 16384;
+    CornerSurvey survey;
+    reserve_to_fill(survey.any_corner, vertex_count);
+    survey.any_corner.resize(vertex_count, no_corner);
+    survey.is_differing.resize(vertex_count, 0);
+    // Which corner is the last one depends on the order of threads, but not what follows from it.
+    parallel_for(triangles.size(), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            for (int i = 0; i < 3; ++i) {
+                relaxed_store(survey.any_corner[triangles[t][i]],
+                              static_cast<Corner>(3 * t) + static_cast<Corner>(i));
+            }
+        }
+    });
+    std::atomic<bool> any_differing = false;
+    parallel_for(triangles.size(), grain, [&](std::size_t begin, std::size_t end) {
+        bool differs = false;
+        for (std::size_t t = begin; t < end; ++t) {
+            for (int i = 0; i < 3; ++i) {
+                const std::uint32_t vertex = triangles[t][i];
+                const std::size_t corner = 3 * t + static_cast<std::size_t>(i);
+                if (compare_values(values[corner], values[survey.any_corner[vertex]]) == 0)
+                    continue;
+                relaxed_store(survey.is_differing[vertex], 1);
+                differs = true;
+            }
+        }
+        if (differs) any_differing = true;
+    });
+    survey.any_differing = any_differing;
+    return survey;
+}
+
+/// Splits the vertices whose corners differ, and sets the vertices of triangles.
+/// \return the old vertex of each copy, which follow the old vertices
+template <typename T>
+std::vector<std::uint32_t> split_differing(const CornerSurvey& survey, std::span<const T> values,
+                                           std::vector<glm::uvec3>& triangles) {
+    std::vector<std::uint32_t> copied;
+    if (!survey.any_differing) return copied;
+    const std::size_t vertex_count = survey.is_differing.size();
+    const CornersByVertex corners(vertex_count, triangles, [&](std::size_t t) {
+        const glm::uvec3& triangle = triangles[t];
+        return (survey.is_differing[triangle.x] | survey.is_differing[triangle.y] |
+                survey.is_differing[triangle.z]) != 0;
+    });
+    std::vector<Corner> around;
+    for (std::size_t v = 0; v < vertex_count; ++v) {
+        check_cancelled(v);
+        if (survey.is_differing[v] == 0) continue;
+        around.assign(corners.at(v).begin(), corners.at(v).end());
+        std::sort(around.begin(), around.end(),
+                  [&](Corner a, Corner b) { return compare_values(values[a], values[b]) < 0; });
+        auto vertex = static_cast<std::uint32_t>(v);
+        for (std::size_t i = 1; i < around.size(); ++i) {
+            if (compare_values(values[around[i - 1]], values[around[i]]) != 0) {
+                vertex = static_cast<std::uint32_t>(vertex_count + copied.size());
+                copied.push_back(static_cast<std::uint32_t>(v));
+            }
+            const Corner corner = around[i];
+            triangles[triangle_of(corner)][static_cast<int>(corner % 3)] = vertex;
+        }
+    }
+    return copied;
+}
 
 template <int N>
 VertexSplit split(std::size_t vertex_count, std::span<const glm::uvec3> triangles,
@@ -43,24 +125,9 @@ VertexSplit split(std::size_t vertex_count, std::span<const glm::uvec3> triangle
     VertexSplit result{std::vector<std::uint32_t>(vertex_count),
                        {triangles.begin(), triangles.end()}};
     std::iota(result.source_vertex.begin(), result.source_vertex.end(), 0U);
-
-    const CornersByVertex corners(vertex_count, triangles);
-    std::vector<Corner> around;
-    for (std::size_t v = 0; v < vertex_count; ++v) {
-        check_cancelled(v);
-        around.assign(corners.at(v).begin(), corners.at(v).end());
-        std::sort(around.begin(), around.end(),
-                  [&](Corner a, Corner b) { return compare_values(values[a], values[b]) < 0; });
-        auto vertex = static_cast<std::uint32_t>(v);
-        for (std::size_t i = 1; i < around.size(); ++i) {
-            if (compare_values(values[around[i - 1]], values[around[i]]) != 0) {
-                vertex = static_cast<std::uint32_t>(result.source_vertex.size());
-                result.source_vertex.push_back(static_cast<std::uint32_t>(v));
-            }
-            const Corner corner = around[i];
-            result.triangles[triangle_of(corner)][static_cast<int>(corner % 3)] = vertex;
-        }
-    }
+    const auto copied =
+        split_differing(survey_corners(vertex_count, triangles, values), values, result.triangles);
+    result.source_vertex.insert(result.source_vertex.end(), copied.begin(), copied.end());
     return result;
 }
 
@@ -108,33 +175,55 @@ void check_options(const Mesh& mesh, const FrameOptions& options) {
     }
 }
 
+/// Appends copies of values by vertex; an absent (empty) attribute stays absent.
+template <typename T>
+void append_copies(std::vector<T>& values, std::span<const std::uint32_t> copied) {
+    if (values.empty() || copied.empty()) return;
+    std::vector<T> extended;
+    reserve_to_fill(extended, values.size() + copied.size());
+    extended.insert(extended.end(), values.begin(), values.end());
+    for (const std::uint32_t vertex : copied)
+        extended.push_back(values[vertex]);
+    values = std::move(extended);
+}
+
 /// Splits vertices whose corners have different values, then stores the values by vertex. A vertex
 /// without a corner gets the value of `isolated`. -0 becomes +0, so that it does not distinguish
-/// vertices.
+/// vertices. Most meshes need few copies, so that arrays are not copied as a whole.
 template <typename T, typename Isolated>
-void store_corners(FramedMesh& framed, const std::vector<T>& values,
-                   std::vector<T> Mesh::*attribute, const Isolated& isolated) {
+void store_corners(FramedMesh& framed, std::span<const T> values, std::vector<T> Mesh::*attribute,
+                   const Isolated& isolated) {
     Mesh& mesh = framed.mesh;
     (mesh.*attribute).clear();
-    const VertexSplit split =
-        split_where_corners_differ(mesh.positions.size(), mesh.triangles, values);
-    framed.source_vertex = carried<std::uint32_t>(framed.source_vertex, split);
-    mesh = carried(mesh, split);
-    std::vector<T>& stored = mesh.*attribute;
+    const CornerSurvey survey = survey_corners<T>(mesh.positions.size(), mesh.triangles, values);
+    const std::vector<std::uint32_t> copied = split_differing(survey, values, mesh.triangles);
+    append_copies(framed.source_vertex, copied);
+    append_copies(mesh.positions, copied);
+    append_copies(mesh.normals, copied);
+    append_copies(mesh.texcoords, copied);
+    append_copies(mesh.texcoords_2, copied);
+    append_copies(mesh.tangents, copied);
+    append_copies(mesh.colors, copied);
+    std::vector<T> stored;
+    reserve_to_fill(stored, mesh.positions.size());
+    for (const Corner corner : survey.any_corner)
+        stored.push_back(corner == no_corner ? T(0.0F) : values[corner] + 0.0F);
     stored.resize(mesh.positions.size(), T(0.0F));
-    for (std::size_t corner = 0; corner < values.size(); ++corner) {
+    // The corners of split vertices have other values.
+    for (std::size_t corner = 0; survey.any_differing && corner < values.size(); ++corner) {
         check_cancelled(corner);
         stored[vertex_of(static_cast<Corner>(corner), mesh.triangles)] = values[corner] + 0.0F;
     }
     for (std::size_t v = 0; v < stored.size(); ++v) {
         if (stored[v] == T(0.0F)) stored[v] = isolated(v);
     }
+    mesh.*attribute = std::move(stored);
 }
 
 /// Stores corner normals as vertex normals and splits vertices as needed.
 void store_corner_normals(FramedMesh& framed, const std::vector<glm::vec3>& at_corners,
                           Report& report) {
-    store_corners(framed, at_corners, &Mesh::normals, [&](std::size_t vertex) {
+    store_corners<glm::vec3>(framed, at_corners, &Mesh::normals, [&](std::size_t vertex) {
         report.add("isolated vertex", "vertex", vertex, "gets the normal (0,0,1)");
         return glm::vec3(0.0F, 0.0F, 1.0F);
     });
@@ -262,31 +351,28 @@ void make_normals(FramedMesh& framed, NormalMode mode, const FrameOptions& optio
     }
 }
 
-std::vector<glm::vec4> corner_tangents(const Mesh& mesh, TangentMethod mode, Report& report) {
-    const auto tangents_by = [&](const auto& method) {
-        return method(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, report);
-    };
-    switch (mode) {
-        case TangentMethod::area_weighted:
-            return tangents_by(area_weighted_tangents);
-        case TangentMethod::lengyel:
-            return tangents_by(lengyel_tangents);
-        case TangentMethod::mikktspace:
-        case TangentMethod::keep:
-        case TangentMethod::none:
-        case TangentMethod::triangle:
-            break;
-    }
-    return tangents_by(mikktspace_tangents);
-}
-
-void make_tangents(FramedMesh& framed, TangentMethod mode, Report& report) {
-    const std::vector<glm::vec4> tangents = corner_tangents(framed.mesh, mode, report);
-    store_corners(framed, tangents, &Mesh::tangents, [&](std::size_t vertex) {
+void store_corner_tangents(FramedMesh& framed, std::span<const glm::vec4> at_corners,
+                           Report& report) {
+    store_corners<glm::vec4>(framed, at_corners, &Mesh::tangents, [&](std::size_t vertex) {
         report.add("tangent of an isolated vertex", "vertex", vertex,
                    "is a fixed direction perpendicular to its normal");
         return glm::vec4(perpendicular_to(framed.mesh.normals[vertex]), -1.0F);
     });
+}
+
+void make_tangents(FramedMesh& framed, TangentMethod mode, Report& report) {
+    const Mesh& mesh = framed.mesh;
+    const auto store_by = [&](const auto& method) {
+        const std::vector<glm::vec4> tangents =
+            method(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, report);
+        store_corner_tangents(framed, tangents, report);
+    };
+    if (mode == TangentMethod::area_weighted) return store_by(area_weighted_tangents);
+    if (mode == TangentMethod::lengyel) return store_by(lengyel_tangents);
+    // The largest array of all: it is not cleared first, and all threads touch its pages.
+    WorkArray<glm::vec4> tangents(3 * mesh.triangles.size());
+    corner_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, tangents, report);
+    store_corner_tangents(framed, tangents, report);
 }
 
 /// Resolves `keep` for tangents. Tangents belong to the normals from which they were computed, so a

@@ -459,7 +459,7 @@ class AccessorRepair {
         for (const char* key : {"min", "max"}) {
             if (needs_bounds || exact.contains(key)) exact[key] = Json::array();
         }
-        update_bounds(exact, std::string(packed_elements(contents_, number).bytes()));
+        update_bounds(exact, packed_elements(contents_, number).bytes());
         bool is_equal = true;
         for (const char* key : {"min", "max"}) {
             if (exact.contains(key)) is_equal = is_equal && is_same(find(json, key), exact[key]);

@@ -281,7 +281,7 @@ std::size_t add_shared_accessor(GltfContents& contents, Json accessor, const std
 
 /// Updates min and max, if the accessor has them. If elements are not finite, the old bounds stay,
 /// because JSON cannot hold them.
-void update_bounds(Json& accessor, const std::string& elements);
+void update_bounds(Json& accessor, std::string_view elements);
 
 /// Sets the bounds that glTF requires for positions: those of the finite coordinates, or 0 if there
 /// are none.

@@ -37,7 +37,7 @@ GltfBuffer& added_buffer(GltfContents& contents) {
 }
 
 template <typename Component>
-void widen_bounds(const std::string& elements, std::size_t element_size, std::size_t component,
+void widen_bounds(std::string_view elements, std::size_t element_size, std::size_t component,
                   double& least, double& most) {
     for (std::size_t at = component * sizeof(Component); at < elements.size(); at += element_size) {
         Component value;
@@ -137,7 +137,7 @@ std::size_t detail::add_shared_accessor(GltfContents& contents, Json accessor,
     return number;
 }
 
-void detail::update_bounds(Json& accessor, const std::string& elements) {
+void detail::update_bounds(Json& accessor, std::string_view elements) {
     const ElementLayout layout = element_layout(accessor);
     Json least = Json::array();
     Json most = Json::array();

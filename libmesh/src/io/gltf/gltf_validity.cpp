@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -24,6 +26,7 @@
 
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_contents.h"
+#include "parallel.h"
 #include "progress_stage.h"
 #include "relief/mesh/report.h"
 
@@ -61,23 +64,40 @@ bool is_float(const GltfContents& contents, std::size_t accessor) {
            gltf_code::float32;
 }
 
+/// Returns 1 if all bits of the exponent are set, otherwise 0.
+std::uint32_t is_non_finite(float value) {
+    constexpr std::uint32_t exponent = 0x7F800000U;
+    return (std::bit_cast<std::uint32_t>(value) & exponent) == exponent ? 1U : 0U;
+}
+
 /// Returns the place of the first float that is not finite.
 std::optional<std::size_t> first_non_finite(std::string_view bytes) {
     constexpr std::size_t block = 1024;
-    std::array<float, block> values;
+    constexpr std::size_t blocks_per_piece = 256;
     const std::size_t count = bytes.size() / sizeof(float);
-    for (std::size_t begin = 0; begin < count; begin += block) {
-        const std::size_t size = std::min(block, count - begin);
-        std::memcpy(values.data(), bytes.data() + begin * sizeof(float), size * sizeof(float));
-        float sum = 0.0F;
-        for (std::size_t i = 0; i < size; ++i)
-            sum += values[i] * 0.0F;  // NaN if the value is not finite, otherwise 0.
-        if (sum == 0.0F) continue;
-        for (std::size_t i = 0; i < size; ++i) {
-            if (!std::isfinite(values[i])) return begin + i;
-        }
-    }
-    return std::nullopt;
+    std::atomic<std::size_t> first = count;
+    parallel_for((count + block - 1) / block, blocks_per_piece,
+                 [&](std::size_t from, std::size_t to) {
+                     std::array<float, block> values;
+                     for (std::size_t begin = from * block; begin < std::min(to * block, count);
+                          begin += block) {
+                         const std::size_t size = std::min(block, count - begin);
+                         std::memcpy(values.data(), bytes.data() + begin * sizeof(float),
+                                     size * sizeof(float));
+                         std::uint32_t found = 0;
+                         for (std::size_t i = 0; i < size; ++i)
+                             found |= is_non_finite(values[i]);
+                         if (found == 0) continue;
+                         std::size_t place = begin;
+                         while (is_non_finite(values[place - begin]) == 0)
+                             ++place;
+                         std::size_t known = first;
+                         while (place < known && !first.compare_exchange_weak(known, place)) {
+                         }
+                         return;
+                     }
+                 });
+    return first == count ? std::nullopt : std::optional<std::size_t>(first);
 }
 
 /// Checks the primitives of a document. Accessors that several share are checked once.
