@@ -42,7 +42,7 @@ Filter = Literal["best", "box", "triangle", "cubic", "lanczos"]
 ColorSpace = Literal["data", "linear", "srgb"]
 TextureFormat = Literal[
     "r8", "rg8", "rgba8", "r16", "rg16", "rgba16", "r16f", "rg16f", "rgba16f", "r32f", "rg32f", "rgba32f",
-    "bc4", "bc4-snorm", "bc5", "bc5-snorm", "bc7",
+    "bc4", "bc4-snorm", "bc5", "bc5-snorm", "bc7", "bc1", "bc1a", "bc3", "bc6h", "bc6h-sfloat",
 ]
 Layer = Literal["normals", "heights", "occlusion", "curvature", "positions", "colors"]
 Space = Literal["tangent", "object", "world"]

@@ -56,8 +56,9 @@ void add_texture_options(CLI::App& app, TextureOptions& options) {
                "read it), bc5-snorm (the same with signed codes, flat is exact), bc7 (with z and "
                "alpha), rg8, rgba8, rg16, rgba16, rg16f or rgba16f (not compressed). Colors: bc7, "
                "bc1 (4 bits, no alpha), bc1a (alpha of 0 or 1), bc3 or rgba8. Packed maps: bc7, "
-               "bc1, bc3 or rgba8. Maps of one value: bc4, r8, r16 or r16f. --mips stores all "
-               "levels in the file. Default: the first one.")
+               "bc1, bc3 or rgba8. Emission: also rgba16f, or bc6h (light above 1, 8 bits per "
+               "texel). Maps of one value: bc4, r8, r16 or r16f, heights also bc6h or bc6h-sfloat "
+               "(with a sign). --mips stores all levels in the file. Default: the first one.")
         .group(group);
     add_choice(app, "--quality", options.quality, enum_choices<BlockQuality>(),
                "Search for block formats: fast, normal or best. Default: normal.")

@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "image/bc7_format.h"
+#include "image/bptc_bits.h"
 #include "image/texel_loops.h"
 #include "parallel.h"
 #include "relief/mesh/block_compression.h"
@@ -20,8 +21,6 @@ namespace relief {
 using namespace relief::detail;
 
 namespace {
-
-constexpr std::size_t block_size = 16;
 
 struct Bc7Mode {
     unsigned subsets, partition_bits, rotation_bits, selection_bits, color_bits, alpha_bits;
@@ -34,17 +33,6 @@ constexpr Bc7Mode bc7_modes[8] = {{3, 4, 0, 0, 4, 0, 1, 0, 3, 0}, {2, 6, 0, 0, 6
                                   {1, 0, 2, 1, 5, 6, 0, 0, 2, 3}, {1, 0, 2, 0, 7, 8, 0, 0, 2, 2},
                                   {1, 0, 0, 0, 7, 7, 1, 0, 4, 0}, {2, 6, 0, 0, 5, 5, 1, 0, 2, 0}};
 
-/// The weights of the second endpoint in 64ths, by the bits of indices.
-constexpr std::array<std::uint8_t, 4> weights_2 = {0, 21, 43, 64};
-constexpr std::array<std::uint8_t, 8> weights_3 = {0, 9, 18, 27, 37, 46, 55, 64};
-constexpr std::array<std::uint8_t, 16> weights_4 = {0,  4,  9,  13, 17, 21, 26, 30,
-                                                    34, 38, 43, 47, 51, 55, 60, 64};
-
-unsigned weight_of(unsigned index, unsigned bits) {
-    if (bits == 2) return weights_2[index];
-    return bits == 3 ? weights_3[index] : weights_4[index];
-}
-
 /// Three subsets: bits 2 t and 2 t + 1 are the subset of texel t.
 constexpr std::uint32_t partitions_3[64] = {
     0xAA685050, 0x6A5A5040, 0x5A5A4200, 0x5450A0A8, 0xA5A50000, 0xA0A05050, 0x5555A0A0, 0x5A5A5050,
@@ -56,12 +44,7 @@ constexpr std::uint32_t partitions_3[64] = {
     0xAA444444, 0x54A854A8, 0x95809580, 0x96969600, 0xA85454A8, 0x80959580, 0xAA141414, 0x96960000,
     0xAAAA1414, 0xA05050A0, 0xA0A5A5A0, 0x96000000, 0x40804080, 0xA9A8A9A8, 0xAAAAAA44, 0x2A4A5254};
 
-/// The texels whose index lacks its highest bit, which is 0: of the second of two subsets, and of
-/// the second and third of three. That of the first subset is texel 0.
-constexpr std::uint8_t anchors_2[64] = {
-    15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 2,  8, 2, 2, 8,
-    8,  15, 2,  8,  2,  2,  8,  8,  2,  2,  15, 15, 6,  8,  2,  8,  15, 15, 2, 8, 2, 2,
-    2,  15, 15, 6,  6,  2,  6,  8,  15, 15, 2,  2,  15, 15, 15, 15, 15, 2,  2, 15};
+/// The same as bptc_anchors_2 of the second and third of three subsets.
 constexpr std::uint8_t second_anchors_3[64] = {
     3,  3,  15, 15, 8, 3,  15, 15, 8,  8,  6, 6,  6, 5,  3, 3,  3,  3,  8,  15, 3,  3,
     6,  10, 5,  8,  8, 6,  8,  5,  15, 15, 8, 15, 3, 5,  6, 10, 8,  15, 15, 3,  15, 5,
@@ -73,34 +56,15 @@ constexpr std::uint8_t third_anchors_3[64] = {
 
 // Decoding.
 
-class BitReader {
-  public:
-    explicit BitReader(const std::byte* block) {
-        for (std::size_t i = 0; i < block_size; ++i)
-            words_[i / 8] |= std::to_integer<std::uint64_t>(block[i]) << (8 * (i % 8));
-    }
-
-    unsigned read(unsigned count) {
-        unsigned value = 0;
-        for (unsigned i = 0; i < count; ++i, ++next_)
-            value |= static_cast<unsigned>(words_[next_ / 64] >> (next_ % 64) & 1U) << i;
-        return value;
-    }
-
-  private:
-    std::array<std::uint64_t, 2> words_{};
-    unsigned next_ = 0;
-};
-
 unsigned subset_of(unsigned subsets, unsigned partition, unsigned texel) {
     if (subsets == 1) return 0;
-    if (subsets == 2) return bc7_partitions_2[partition] >> texel & 1U;
+    if (subsets == 2) return bptc_partitions_2[partition] >> texel & 1U;
     return partitions_3[partition] >> (2 * texel) & 3U;
 }
 
 bool is_anchor(unsigned subsets, unsigned partition, unsigned texel) {
     if (texel == 0) return true;
-    if (subsets == 2) return texel == anchors_2[partition];
+    if (subsets == 2) return texel == bptc_anchors_2[partition];
     return subsets == 3 &&
            (texel == second_anchors_3[partition] || texel == third_anchors_3[partition]);
 }
@@ -117,11 +81,11 @@ unsigned color_between(unsigned first, unsigned second, unsigned weight) {
 }
 
 using BlockColor = std::array<std::uint8_t, 4>;
-using BlockColors = std::array<BlockColor, bc7_texels>;
+using BlockColors = std::array<BlockColor, bptc_texels>;
 
 BlockColors decode_bc7_block(const std::byte* block) {
     BlockColors colors{};
-    BitReader bits(block);
+    BptcBitReader bits(block);
     unsigned number = 0;
     while (number < 8 && bits.read(1) == 0)
         ++number;
@@ -150,21 +114,21 @@ BlockColors decode_bc7_block(const std::byte* block) {
             endpoints[end][channel] = widened(endpoints[end][channel], all);
         }
     }
-    std::array<unsigned, bc7_texels> first{};
-    std::array<unsigned, bc7_texels> second{};
-    for (unsigned t = 0; t < bc7_texels; ++t)
+    std::array<unsigned, bptc_texels> first{};
+    std::array<unsigned, bptc_texels> second{};
+    for (unsigned t = 0; t < bptc_texels; ++t)
         first[t] = bits.read(mode.index_bits - (is_anchor(mode.subsets, partition, t) ? 1 : 0));
     if (mode.second_index_bits > 0) {
-        for (unsigned t = 0; t < bc7_texels; ++t)
+        for (unsigned t = 0; t < bptc_texels; ++t)
             second[t] = bits.read(mode.second_index_bits - (t == 0 ? 1 : 0));
     }
-    for (unsigned t = 0; t < bc7_texels; ++t) {
+    for (unsigned t = 0; t < bptc_texels; ++t) {
         const unsigned end = 2 * subset_of(mode.subsets, partition, t);
-        const unsigned first_weight = weight_of(first[t], mode.index_bits);
+        const unsigned first_weight = bptc_weight(first[t], mode.index_bits);
         unsigned color_weight = first_weight;
         unsigned alpha_weight = first_weight;
         if (mode.second_index_bits > 0) {
-            const unsigned second_weight = weight_of(second[t], mode.second_index_bits);
+            const unsigned second_weight = bptc_weight(second[t], mode.second_index_bits);
             (selection == 1 ? color_weight : alpha_weight) = second_weight;
         }
         BlockColor& color = colors[t];
@@ -180,25 +144,6 @@ BlockColors decode_bc7_block(const std::byte* block) {
 
 // Storing.
 
-class BitWriter {
-  public:
-    /// Writes the lowest `count` bits.
-    void write(unsigned value, unsigned count) {
-        const std::uint64_t bits = value & ((1U << count) - 1U);
-        words_[next_ / 64] |= bits << (next_ % 64);
-        if (next_ % 64 + count > 64) words_[next_ / 64 + 1] |= bits >> (64 - next_ % 64);
-        next_ += count;
-    }
-    void store(std::byte* block) const {
-        for (std::size_t i = 0; i < block_size; ++i)
-            block[i] = static_cast<std::byte>(words_[i / 8] >> (8 * (i % 8)) & 255U);
-    }
-
-  private:
-    std::array<std::uint64_t, 2> words_{};
-    std::size_t next_ = 0;
-};
-
 /// Swaps the endpoints of a subset, if the index of its anchor has its highest bit.
 void make_anchor_low(Bc7Encoding& encoding, std::size_t subset, std::size_t anchor, unsigned bits,
                      unsigned index_bits) {
@@ -213,7 +158,7 @@ void make_anchor_low(Bc7Encoding& encoding, std::size_t subset, std::size_t anch
         std::swap(encoding.ends[end], encoding.ends[end + 1]);
         std::swap(encoding.parity[end], encoding.parity[end + 1]);
     }
-    for (std::size_t t = 0; t < bc7_texels; ++t) {
+    for (std::size_t t = 0; t < bptc_texels; ++t) {
         if ((bits >> t & 1U) == subset)
             encoding.index[t] = static_cast<std::uint8_t>(last - encoding.index[t]);
     }
@@ -221,16 +166,16 @@ void make_anchor_low(Bc7Encoding& encoding, std::size_t subset, std::size_t anch
 
 void store_encoding(Bc7Encoding encoding, std::byte* block) {
     const Bc7Mode& mode = bc7_modes[encoding.mode];
-    const unsigned bits = mode.subsets == 2 ? bc7_partitions_2[encoding.partition] : 0;
+    const unsigned bits = mode.subsets == 2 ? bptc_partitions_2[encoding.partition] : 0;
     make_anchor_low(encoding, 0, 0, bits, mode.index_bits);
     if (mode.subsets == 2)
-        make_anchor_low(encoding, 1, anchors_2[encoding.partition], bits, mode.index_bits);
+        make_anchor_low(encoding, 1, bptc_anchors_2[encoding.partition], bits, mode.index_bits);
     if (mode.second_index_bits > 0 && encoding.second_index[0] > 1) {
         std::swap(encoding.ends[0][3], encoding.ends[1][3]);
         for (std::uint8_t& index : encoding.second_index)
             index = static_cast<std::uint8_t>(3 - index);
     }
-    BitWriter writer;
+    BptcBitWriter writer;
     writer.write(1U << encoding.mode, encoding.mode + 1);
     writer.write(encoding.partition, mode.partition_bits);
     writer.write(encoding.rotation, mode.rotation_bits);
@@ -244,11 +189,11 @@ void store_encoding(Bc7Encoding encoding, std::byte* block) {
         const bool is_stored = end % 2 == 0 && mode.subset_parity > 0;
         if (mode.endpoint_parity > 0 || is_stored) writer.write(encoding.parity[end], 1);
     }
-    for (unsigned t = 0; t < bc7_texels; ++t) {
+    for (unsigned t = 0; t < bptc_texels; ++t) {
         const bool anchor = is_anchor(mode.subsets, encoding.partition, t);
         writer.write(encoding.index[t], mode.index_bits - (anchor ? 1U : 0U));
     }
-    for (std::size_t t = 0; t < bc7_texels && mode.second_index_bits > 0; ++t)
+    for (std::size_t t = 0; t < bptc_texels && mode.second_index_bits > 0; ++t)
         writer.write(encoding.second_index[t], t == 0 ? 1 : 2);
     writer.store(block);
 }
@@ -273,7 +218,7 @@ constexpr ExactCodes exact_codes;
 /// Replaces the encoding for a block whose texels all have the same color, rounded to 8 bits.
 void use_single_color(const Bc7Colors& colors, std::size_t lane, Bc7Encoding& encoding) {
     for (std::size_t c = 0; c < 4; ++c) {
-        for (std::size_t t = 1; t < bc7_texels; ++t) {
+        for (std::size_t t = 1; t < bptc_texels; ++t) {
             if (colors.channel[c][t][lane] != colors.channel[c][0][lane]) return;
         }
     }
@@ -309,7 +254,7 @@ float exact_code(Sample sample, bool& is_finite) {
 template <typename Sample>
 void load_block(const ImageView& image, std::size_t row, std::size_t column, std::size_t lane,
                 Bc7Colors& colors, Report& report) {
-    for (std::size_t t = 0; t < bc7_texels; ++t) {
+    for (std::size_t t = 0; t < bptc_texels; ++t) {
         const int place_x = static_cast<int>(4 * column + t % 4);
         const int place_y = static_cast<int>(4 * row + t / 4);
         const int x = std::min(place_x, image.width - 1);
@@ -338,8 +283,8 @@ void encode_bc7_rows(const ImageView& image, BlockQuality quality, std::size_t b
     const std::size_t columns = (static_cast<std::size_t>(image.width) + 3) / 4;
     Bc7Colors colors{};
     for (std::size_t row = begin; row < end; ++row) {
-        for (std::size_t first = 0; first < columns; first += bc7_lanes) {
-            colors.count = std::min(bc7_lanes, columns - first);
+        for (std::size_t first = 0; first < columns; first += bptc_lanes) {
+            colors.count = std::min(bptc_lanes, columns - first);
             for (std::size_t lane = 0; lane < colors.count; ++lane)
                 load_block<Sample>(image, row, first + lane, lane, colors, report);
             Bc7Encodings encodings;
@@ -347,7 +292,7 @@ void encode_bc7_rows(const ImageView& image, BlockQuality quality, std::size_t b
             for (std::size_t lane = 0; lane < colors.count; ++lane) {
                 use_single_color(colors, lane, encodings[lane]);
                 store_encoding(encodings[lane],
-                               &blocks[(row * columns + first + lane) * block_size]);
+                               &blocks[(row * columns + first + lane) * bptc_block_size]);
             }
         }
     }
@@ -386,8 +331,8 @@ Image decode_bc7(std::span<const std::byte> blocks, int width, int height) {
         for (std::size_t i = begin * block_columns; i < end * block_columns; ++i) {
             const std::size_t first_x = i % block_columns * 4;
             const std::size_t first_y = i / block_columns * 4;
-            const BlockColors colors = decode_bc7_block(&blocks[i * block_size]);
-            for (std::size_t t = 0; t < bc7_texels; ++t) {
+            const BlockColors colors = decode_bc7_block(&blocks[i * bptc_block_size]);
+            for (std::size_t t = 0; t < bptc_texels; ++t) {
                 const std::size_t x = first_x + t % 4;
                 const std::size_t y = first_y + t / 4;
                 if (x >= columns || y >= rows) continue;

@@ -11,34 +11,13 @@
 #include <utility>
 
 #include "image/bc7_format.h"
+#include "image/bptc_lines.h"
 #include "portable_math.h"
 
 namespace relief::detail {
 namespace {
 
-/// The channels of a line, in any order.
-template <std::size_t channels>
-struct ChannelSet {
-    const Bc7Texels* channel[channels];
-
-    const Bc7Texels& operator[](std::size_t c) const { return *channel[c]; }
-};
-
-/// Rounds to the nearest integer. Values are below 2^22.
-RELIEF_INLINE float nearest_integer(float value) {
-    constexpr float shift = 12582912.0F;  // 1.5 * 2^23: its sums have no fraction.
-    return (value + shift) - shift;
-}
-
-/// Rounds multiples of 1/64 down.
-RELIEF_INLINE float rounded_down(float value) {
-    return nearest_integer(value - 0.4921875F);
-}
-
-RELIEF_INLINE float limited(float value, float least, float greatest) {
-    const float raised = value < least ? least : value;
-    return raised > greatest ? greatest : raised;
-}
+constexpr EndRange color_range = {0.0F, 255.0F};
 
 // Endpoints.
 
@@ -71,133 +50,23 @@ RELIEF_INLINE float end_value(float code, float parity) {
     return high * full + rounded_down(full / low);
 }
 
-/// A line between two endpoints, not rounded.
-template <std::size_t channels>
-struct RealLine {
-    Bc7Lanes ends[2][channels];
-};
-
 /// The stored numbers of a line, with the indices of the texels.
 template <std::size_t channels>
 struct LineFit {
-    Bc7Lanes codes[2][channels];
-    Bc7Lanes parity[2];
-    Bc7Texels index;
-    Bc7Lanes error;
+    BptcLanes codes[2][channels];
+    BptcLanes parity[2];
+    BptcTexels index;
+    BptcLanes error;
 };
-
-// Fitting.
-
-/// Starts a power iteration: chooses the row of the largest variance.
-template <std::size_t channels>
-RELIEF_INLINE void choose_row(const Bc7Lanes (&covariance)[channels][channels],
-                              Bc7Lanes (&axis)[channels]) {
-    for (std::size_t k = 0; k < channels; ++k)
-        axis[k] = covariance[0][k];
-    Bc7Lanes largest = covariance[0][0];
-    for (std::size_t c = 1; c < channels; ++c) {
-        for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
-            const bool is_larger = covariance[c][c][lane] > largest[lane];
-            largest[lane] = is_larger ? covariance[c][c][lane] : largest[lane];
-            for (std::size_t k = 0; k < channels; ++k)
-                axis[k][lane] = is_larger ? covariance[c][k][lane] : axis[k][lane];
-        }
-    }
-}
-
-/// The line through the mean along the direction of largest variance, as long as the colors.
-/// \param weight  1 for the texels of the subset, else 0
-template <std::size_t channels>
-RELIEF_INLINE void fit_principal_line(const ChannelSet<channels>& values, const Bc7Texels& weight,
-                                      RealLine<channels>& line) {
-    Bc7Lanes count;
-    count.fill(0.0F);
-    for (std::size_t t = 0; t < bc7_texels; ++t) {
-        for (std::size_t lane = 0; lane < bc7_lanes; ++lane)
-            count[lane] += weight[t][lane];
-    }
-    Bc7Lanes mean[channels];
-    Bc7Texels centered[channels];
-    for (std::size_t c = 0; c < channels; ++c) {
-        mean[c].fill(0.0F);
-        for (std::size_t t = 0; t < bc7_texels; ++t) {
-            for (std::size_t lane = 0; lane < bc7_lanes; ++lane)
-                mean[c][lane] += weight[t][lane] * values[c][t][lane];
-        }
-        for (std::size_t lane = 0; lane < bc7_lanes; ++lane)
-            mean[c][lane] /= count[lane] > 1.0F ? count[lane] : 1.0F;
-        for (std::size_t t = 0; t < bc7_texels; ++t) {
-            for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
-                centered[c][t][lane] = weight[t][lane] * (values[c][t][lane] - mean[c][lane]);
-            }
-        }
-    }
-    Bc7Lanes covariance[channels][channels];
-    for (std::size_t a = 0; a < channels; ++a) {
-        for (std::size_t b = a; b < channels; ++b) {
-            Bc7Lanes sum;
-            sum.fill(0.0F);
-            for (std::size_t t = 0; t < bc7_texels; ++t) {
-                for (std::size_t lane = 0; lane < bc7_lanes; ++lane)
-                    sum[lane] += centered[a][t][lane] * centered[b][t][lane];
-            }
-            covariance[a][b] = sum;
-            covariance[b][a] = sum;
-        }
-    }
-    Bc7Lanes axis[channels];
-    choose_row<channels>(covariance, axis);
-    for (int round = 0; round < 5; ++round) {
-        Bc7Lanes next[channels];
-        for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
-            float size = 1e-12F;
-            for (std::size_t a = 0; a < channels; ++a) {
-                float sum = 0.0F;
-                for (std::size_t b = 0; b < channels; ++b)
-                    sum += covariance[a][b][lane] * axis[b][lane];
-                next[a][lane] = sum;
-                const float magnitude = sum < 0.0F ? -sum : sum;
-                size = magnitude > size ? magnitude : size;
-            }
-            for (std::size_t c = 0; c < channels; ++c)
-                axis[c][lane] = next[c][lane] / size;
-        }
-    }
-    Bc7Lanes least, greatest, squares;
-    least.fill(0.0F);
-    greatest.fill(0.0F);
-    for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
-        float sum = 0.0F;
-        for (std::size_t c = 0; c < channels; ++c)
-            sum += axis[c][lane] * axis[c][lane];
-        squares[lane] = sum > 1e-12F ? sum : 1.0F;
-    }
-    for (std::size_t t = 0; t < bc7_texels; ++t) {
-        for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
-            float along = 0.0F;
-            for (std::size_t c = 0; c < channels; ++c)
-                along += axis[c][lane] * centered[c][t][lane];
-            least[lane] = along < least[lane] ? along : least[lane];
-            greatest[lane] = along > greatest[lane] ? along : greatest[lane];
-        }
-    }
-    for (std::size_t c = 0; c < channels; ++c) {
-        for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
-            const float step = axis[c][lane] / squares[lane];
-            line.ends[0][c][lane] = limited(mean[c][lane] + least[lane] * step, 0.0F, 255.0F);
-            line.ends[1][c][lane] = limited(mean[c][lane] + greatest[lane] * step, 0.0F, 255.0F);
-        }
-    }
-}
 
 /// Rounds a line, chooses the index of each texel, and computes the squared error. The colors of a
 /// line are nearly evenly spaced: the index is that of the projection.
 template <std::size_t channels, int steps, EndCoding coding>
-RELIEF_INLINE void evaluate_line(const ChannelSet<channels>& values, const Bc7Texels& weight,
+RELIEF_INLINE void evaluate_line(const ChannelSet<channels>& values, const BptcTexels& weight,
                                  const RealLine<channels>& line, LineFit<channels>& fit) {
-    Bc7Lanes first[channels], direction[channels];
-    Bc7Lanes scale;
-    for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
+    BptcLanes first[channels], direction[channels];
+    BptcLanes scale;
+    for (std::size_t lane = 0; lane < bptc_lanes; ++lane) {
         float squares = 0.0F;
         for (std::size_t c = 0; c < channels; ++c) {
             float rounded[2];
@@ -213,8 +82,8 @@ RELIEF_INLINE void evaluate_line(const ChannelSet<channels>& values, const Bc7Te
         scale[lane] = squares > 0.0F ? static_cast<float>(steps) / squares : 0.0F;
     }
     fit.error.fill(0.0F);
-    for (std::size_t t = 0; t < bc7_texels; ++t) {
-        for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
+    for (std::size_t t = 0; t < bptc_texels; ++t) {
+        for (std::size_t lane = 0; lane < bptc_lanes; ++lane) {
             float along = 0.0F;
             for (std::size_t c = 0; c < channels; ++c)
                 along += direction[c][lane] * (values[c][t][lane] - first[c][lane]);
@@ -235,58 +104,10 @@ RELIEF_INLINE void evaluate_line(const ChannelSet<channels>& values, const Bc7Te
     }
 }
 
-/// The endpoints that are best for the indices, by least squares.
-template <std::size_t channels, int steps>
-RELIEF_INLINE void refit_line(const ChannelSet<channels>& values, const Bc7Texels& weight,
-                              const LineFit<channels>& fit, RealLine<channels>& line) {
-    Bc7Lanes first_squares, products, second_squares;
-    Bc7Lanes first_sum[channels], second_sum[channels];
-    first_squares.fill(0.0F);
-    products.fill(0.0F);
-    second_squares.fill(0.0F);
-    for (std::size_t c = 0; c < channels; ++c) {
-        first_sum[c].fill(0.0F);
-        second_sum[c].fill(0.0F);
-    }
-    for (std::size_t t = 0; t < bc7_texels; ++t) {
-        for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
-            const float second = fit.index[t][lane] * (1.0F / static_cast<float>(steps));
-            const float first = 1.0F - second;
-            const float counted_first = weight[t][lane] * first;
-            const float counted_second = weight[t][lane] * second;
-            first_squares[lane] += counted_first * first;
-            products[lane] += counted_first * second;
-            second_squares[lane] += counted_second * second;
-            for (std::size_t c = 0; c < channels; ++c) {
-                first_sum[c][lane] += counted_first * values[c][t][lane];
-                second_sum[c][lane] += counted_second * values[c][t][lane];
-            }
-        }
-    }
-    for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
-        const float determinant =
-            first_squares[lane] * second_squares[lane] - products[lane] * products[lane];
-        const bool is_usable = determinant > 1e-3F;
-        const float divisor = is_usable ? determinant : 1.0F;
-        for (std::size_t c = 0; c < channels; ++c) {
-            const float first =
-                (second_squares[lane] * first_sum[c][lane] - products[lane] * second_sum[c][lane]) /
-                divisor;
-            const float second =
-                (first_squares[lane] * second_sum[c][lane] - products[lane] * first_sum[c][lane]) /
-                divisor;
-            line.ends[0][c][lane] =
-                is_usable ? limited(first, 0.0F, 255.0F) : line.ends[0][c][lane];
-            line.ends[1][c][lane] =
-                is_usable ? limited(second, 0.0F, 255.0F) : line.ends[1][c][lane];
-        }
-    }
-}
-
 /// Replaces the fit of each block by another one if that has a smaller error.
 template <std::size_t channels>
 RELIEF_INLINE void keep_better(const LineFit<channels>& other, LineFit<channels>& fit) {
-    for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
+    for (std::size_t lane = 0; lane < bptc_lanes; ++lane) {
         const bool is_better = other.error[lane] < fit.error[lane];
         for (std::size_t end = 0; end < 2; ++end) {
             for (std::size_t c = 0; c < channels; ++c) {
@@ -295,7 +116,7 @@ RELIEF_INLINE void keep_better(const LineFit<channels>& other, LineFit<channels>
             }
             fit.parity[end][lane] = is_better ? other.parity[end][lane] : fit.parity[end][lane];
         }
-        for (std::size_t t = 0; t < bc7_texels; ++t)
+        for (std::size_t t = 0; t < bptc_texels; ++t)
             fit.index[t][lane] = is_better ? other.index[t][lane] : fit.index[t][lane];
         fit.error[lane] = is_better ? other.error[lane] : fit.error[lane];
     }
@@ -307,7 +128,7 @@ enum class Parity { none, of_ends, of_subset };
 template <std::size_t channels, EndCoding coding>
 RELIEF_INLINE void choose_parities(const RealLine<channels>& line, bool is_shared,
                                    LineFit<channels>& fit) {
-    for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
+    for (std::size_t lane = 0; lane < bptc_lanes; ++lane) {
         float gain[2] = {};
         for (std::size_t end = 0; end < 2; ++end) {
             for (std::size_t c = 0; c < channels; ++c) {
@@ -335,12 +156,11 @@ constexpr SearchEffort effort_of(BlockQuality quality) {
     return {4, 3, 6};
 }
 
-/// Fits a line to the texels of a subset.
+/// Searches the stored numbers of a line. \param line  fitted to the texels of a subset
 template <std::size_t channels, int steps, EndCoding coding, Parity parity>
-RELIEF_INLINE void search_line(const ChannelSet<channels>& values, const Bc7Texels& weight,
-                               const SearchEffort& effort, LineFit<channels>& best) {
-    RealLine<channels> line;
-    fit_principal_line<channels>(values, weight, line);
+RELIEF_INLINE void search_line(const ChannelSet<channels>& values, const BptcTexels& weight,
+                               const SearchEffort& effort, RealLine<channels> line,
+                               LineFit<channels>& best) {
     best.error.fill(1e30F);
     constexpr int all_parities = parity == Parity::none ? 1 : parity == Parity::of_subset ? 2 : 4;
     for (int round = 0; round < effort.rounds; ++round) {
@@ -361,161 +181,18 @@ RELIEF_INLINE void search_line(const ChannelSet<channels>& values, const Bc7Texe
             keep_better<channels>(other, fit);
         }
         keep_better<channels>(fit, best);
-        if (round + 1 < effort.rounds) refit_line<channels, steps>(values, weight, fit, line);
+        if (round + 1 < effort.rounds)
+            refit_line<channels, steps>(values, weight, fit.index, color_range, line);
     }
 }
 
-// Partitions.
-
-constexpr std::size_t max_partitions = 6;
-
-/// The partitions of a block with the smallest variance beside the lines of both subsets.
-struct PartitionChoice {
-    Bc7Lanes number[max_partitions], score[max_partitions];
-};
-
-/// Sums of values and of their products over the texels of a subset.
-template <std::size_t channels>
-struct SubsetSums {
-    static constexpr std::size_t count = channels + channels * (channels + 1) / 2;
-    Bc7Lanes sum[count];  ///< Of each channel; of the products (a, b) with a <= b.
-};
-
-/// Terms of such sums of each texel, followed by zeros.
-struct SumTerms {
-    Bc7Lanes texel[bc7_texels + 1];
-};
-
-/// Adds the variance beside the line to scores: the trace less the largest eigenvalue, by power
-/// iteration. \param texels  number of texels of the subset
-template <std::size_t channels>
-RELIEF_INLINE void add_rest_of_line(const SubsetSums<channels>& sums, float texels,
-                                    Bc7Lanes& score) {
-    const float inverse = 1.0F / texels;
-    Bc7Lanes covariance[channels][channels];
-    std::size_t next_sum = channels;
-    for (std::size_t a = 0; a < channels; ++a) {
-        for (std::size_t b = a; b < channels; ++b, ++next_sum) {
-            for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
-                const float product = sums.sum[a][lane] * sums.sum[b][lane];
-                covariance[a][b][lane] = sums.sum[next_sum][lane] - product * inverse;
-            }
-            covariance[b][a] = covariance[a][b];
-        }
-    }
-    Bc7Lanes axis[channels];
-    choose_row<channels>(covariance, axis);
-    for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
-        float next[channels];
-        float trace = 0.0F;
-        float squares = 1e-12F;
-        for (std::size_t a = 0; a < channels; ++a) {
-            float value = 0.0F;
-            for (std::size_t b = 0; b < channels; ++b)
-                value += covariance[a][b][lane] * axis[b][lane];
-            next[a] = value;
-            squares += value * value;
-            trace += covariance[a][a][lane];
-        }
-        float along = 0.0F;
-        for (std::size_t a = 0; a < channels; ++a) {
-            float value = 0.0F;
-            for (std::size_t b = 0; b < channels; ++b)
-                value += covariance[a][b][lane] * next[b];
-            along += value * next[a];
-        }
-        score[lane] += trace - along / squares;
-    }
-}
-
-/// Inserts a partition where its score belongs.
-RELIEF_INLINE void insert_partition(std::size_t partition, Bc7Lanes& score, std::size_t wanted,
-                                    PartitionChoice& choice) {
-    Bc7Lanes number;
-    number.fill(static_cast<float>(partition));
-    for (std::size_t k = 0; k < wanted; ++k) {
-        for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
-            const float old_score = choice.score[k][lane];
-            const float old_number = choice.number[k][lane];
-            const bool is_better = score[lane] < old_score;
-            choice.score[k][lane] = is_better ? score[lane] : old_score;
-            choice.number[k][lane] = is_better ? number[lane] : old_number;
-            score[lane] = is_better ? old_score : score[lane];
-            number[lane] = is_better ? old_number : number[lane];
-        }
-    }
-}
-
-/// Adds the terms of four texels.
-RELIEF_INLINE void add_four(const SumTerms& terms, const std::size_t* texels, Bc7Lanes& sum) {
-    const Bc7Lanes& a = terms.texel[texels[0]];
-    const Bc7Lanes& b = terms.texel[texels[1]];
-    const Bc7Lanes& c = terms.texel[texels[2]];
-    const Bc7Lanes& d = terms.texel[texels[3]];
-    for (std::size_t lane = 0; lane < bc7_lanes; ++lane)
-        sum[lane] += (a[lane] + b[lane]) + (c[lane] + d[lane]);
-}
-
-template <std::size_t channels>
-RELIEF_INLINE void choose_partitions(const ChannelSet<channels>& values, std::size_t wanted,
-                                     PartitionChoice& choice) {
-    constexpr std::size_t sum_count = SubsetSums<channels>::count;
-    // Values from the first texel on, so that products are small; and products.
-    SumTerms terms[sum_count];
-    for (std::size_t c = 0; c < channels; ++c) {
-        for (std::size_t t = 0; t < bc7_texels; ++t) {
-            for (std::size_t lane = 0; lane < bc7_lanes; ++lane)
-                terms[c].texel[t][lane] = values[c][t][lane] - values[c][0][lane];
-        }
-    }
-    std::size_t next_term = channels;
-    for (std::size_t a = 0; a < channels; ++a) {
-        for (std::size_t b = a; b < channels; ++b, ++next_term) {
-            for (std::size_t t = 0; t < bc7_texels; ++t) {
-                for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
-                    terms[next_term].texel[t][lane] =
-                        terms[a].texel[t][lane] * terms[b].texel[t][lane];
-                }
-            }
-        }
-    }
-    SubsetSums<channels> all;
-    for (std::size_t i = 0; i < sum_count; ++i) {
-        all.sum[i].fill(0.0F);
-        for (std::size_t t = 0; t < bc7_texels; ++t) {
-            for (std::size_t lane = 0; lane < bc7_lanes; ++lane)
-                all.sum[i][lane] += terms[i].texel[t][lane];
-        }
-        terms[i].texel[bc7_texels].fill(0.0F);
-    }
-    for (std::size_t k = 0; k < wanted; ++k) {
-        choice.number[k].fill(0.0F);
-        choice.score[k].fill(1e30F);
-    }
-    for (std::size_t partition = 0; partition < 64; ++partition) {
-        // The texels of the second subset, in groups of four: the last one is filled with zeros.
-        std::size_t texels[bc7_texels + 4];
-        std::size_t count = 0;
-        for (std::size_t t = 0; t < bc7_texels; ++t) {
-            texels[count] = t;
-            count += bc7_partitions_2[partition] >> t & 1U;
-        }
-        for (std::size_t k = 0; k < 4; ++k)
-            texels[count + k] = bc7_texels;
-        SubsetSums<channels> first, second;
-        for (std::size_t i = 0; i < sum_count; ++i) {
-            second.sum[i].fill(0.0F);
-            for (std::size_t k = 0; k < count; k += 4)
-                add_four(terms[i], &texels[k], second.sum[i]);
-            for (std::size_t lane = 0; lane < bc7_lanes; ++lane)
-                first.sum[i][lane] = all.sum[i][lane] - second.sum[i][lane];
-        }
-        Bc7Lanes score;
-        score.fill(0.0F);
-        add_rest_of_line<channels>(first, static_cast<float>(bc7_texels - count), score);
-        add_rest_of_line<channels>(second, static_cast<float>(count), score);
-        insert_partition(partition, score, wanted, choice);
-    }
+/// Fits a line to all texels, and searches its stored numbers.
+template <std::size_t channels, int steps, EndCoding coding, Parity parity>
+RELIEF_INLINE void search_whole(const ChannelSet<channels>& values, const BptcTexels& all,
+                                const SearchEffort& effort, LineFit<channels>& best) {
+    RealLine<channels> line;
+    fit_principal_line<channels>(values, all, color_range, line);
+    search_line<channels, steps, coding, parity>(values, all, effort, line, best);
 }
 
 // The best encoding of each block.
@@ -534,11 +211,11 @@ void copy_line(const LineFit<channels>& fit, std::size_t lane, std::size_t first
 
 RELIEF_INLINE void try_mode_6(const Bc7Colors& colors, const SearchEffort& effort,
                               Bc7Encodings& encodings) {
-    Bc7Texels all;
-    for (Bc7Lanes& one : all.texel)
+    BptcTexels all;
+    for (BptcLanes& one : all.texel)
         one.fill(1.0F);
     LineFit<4> fit;
-    search_line<4, 15, EndCoding{7, true}, Parity::of_ends>(
+    search_whole<4, 15, EndCoding{7, true}, Parity::of_ends>(
         {{&colors.channel[0], &colors.channel[1], &colors.channel[2], &colors.channel[3]}}, all,
         effort, fit);
     for (std::size_t lane = 0; lane < colors.count; ++lane) {
@@ -547,25 +224,25 @@ RELIEF_INLINE void try_mode_6(const Bc7Colors& colors, const SearchEffort& effor
         encoding.mode = 6;
         encoding.error = fit.error[lane];
         copy_line<4>(fit, lane, 0, 0, encoding);
-        for (std::size_t t = 0; t < bc7_texels; ++t)
+        for (std::size_t t = 0; t < bptc_texels; ++t)
             encoding.index[t] = static_cast<std::uint8_t>(fit.index[t][lane]);
     }
 }
 
 RELIEF_INLINE void try_mode_5(const Bc7Colors& colors, const SearchEffort& effort,
                               Bc7Encodings& encodings) {
-    Bc7Texels all;
-    for (Bc7Lanes& one : all.texel)
+    BptcTexels all;
+    for (BptcLanes& one : all.texel)
         one.fill(1.0F);
     for (unsigned rotation = 0; rotation < 4; ++rotation) {
-        const Bc7Texels* order[4] = {&colors.channel[0], &colors.channel[1], &colors.channel[2],
-                                     &colors.channel[3]};
+        const BptcTexels* order[4] = {&colors.channel[0], &colors.channel[1], &colors.channel[2],
+                                      &colors.channel[3]};
         if (rotation > 0) std::swap(order[3], order[rotation - 1]);
         LineFit<3> shared;
         LineFit<1> alone;
-        search_line<3, 3, EndCoding{7, false}, Parity::none>({{order[0], order[1], order[2]}}, all,
-                                                             effort, shared);
-        search_line<1, 3, EndCoding{8, false}, Parity::none>({{order[3]}}, all, effort, alone);
+        search_whole<3, 3, EndCoding{7, false}, Parity::none>({{order[0], order[1], order[2]}}, all,
+                                                              effort, shared);
+        search_whole<1, 3, EndCoding{8, false}, Parity::none>({{order[3]}}, all, effort, alone);
         for (std::size_t lane = 0; lane < colors.count; ++lane) {
             Bc7Encoding& encoding = encodings[lane];
             const float error = shared.error[lane] + alone.error[lane];
@@ -575,7 +252,7 @@ RELIEF_INLINE void try_mode_5(const Bc7Colors& colors, const SearchEffort& effor
             encoding.error = error;
             copy_line<3>(shared, lane, 0, 0, encoding);
             copy_line<1>(alone, lane, 0, 3, encoding);
-            for (std::size_t t = 0; t < bc7_texels; ++t) {
+            for (std::size_t t = 0; t < bptc_texels; ++t) {
                 encoding.index[t] = static_cast<std::uint8_t>(shared.index[t][lane]);
                 encoding.second_index[t] = static_cast<std::uint8_t>(alone.index[t][lane]);
             }
@@ -585,13 +262,13 @@ RELIEF_INLINE void try_mode_5(const Bc7Colors& colors, const SearchEffort& effor
 
 /// A partition for each block.
 struct BlockSubsets {
-    Bc7Lanes partition;
-    Bc7Texels weight[2];  ///< 1 for the texels of the subset, else 0.
+    BptcLanes partition;
+    BptcTexels weight[2];  ///< 1 for the texels of the subset, else 0.
 
-    explicit BlockSubsets(const Bc7Lanes& partitions) : partition(partitions) {
-        for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
-            const unsigned bits = bc7_partitions_2[static_cast<std::size_t>(partition[lane])];
-            for (std::size_t t = 0; t < bc7_texels; ++t) {
+    explicit BlockSubsets(const BptcLanes& partitions) : partition(partitions) {
+        for (std::size_t lane = 0; lane < bptc_lanes; ++lane) {
+            const unsigned bits = bptc_partitions_2[static_cast<std::size_t>(partition[lane])];
+            for (std::size_t t = 0; t < bptc_texels; ++t) {
                 const unsigned bit = bits >> t & 1U;
                 weight[0][t][lane] = static_cast<float>(1U - bit);
                 weight[1][t][lane] = static_cast<float>(bit);
@@ -600,19 +277,33 @@ struct BlockSubsets {
     }
 };
 
+/// The lines of both subsets, which several modes round differently.
+template <std::size_t channels>
+struct SubsetLines {
+    RealLine<channels> line[2];
+
+    RELIEF_INLINE SubsetLines(const Bc7Colors& colors, const BlockSubsets& subsets) {
+        ChannelSet<channels> values;
+        for (std::size_t c = 0; c < channels; ++c)
+            values.channel[c] = &colors.channel[c];
+        for (std::size_t subset = 0; subset < 2; ++subset)
+            fit_principal_line<channels>(values, subsets.weight[subset], color_range, line[subset]);
+    }
+};
+
 /// Tries a mode of two subsets with a partition for each block.
 /// \param extra  the error of channels that the mode does not store
 template <std::size_t channels, int steps, EndCoding coding, Parity parity>
 RELIEF_INLINE void try_subsets(const Bc7Colors& colors, unsigned mode, const BlockSubsets& subsets,
-                               const Bc7Lanes& extra, const SearchEffort& effort,
-                               Bc7Encodings& encodings) {
+                               const SubsetLines<channels>& lines, const BptcLanes& extra,
+                               const SearchEffort& effort, Bc7Encodings& encodings) {
     ChannelSet<channels> values;
     for (std::size_t c = 0; c < channels; ++c)
         values.channel[c] = &colors.channel[c];
     LineFit<channels> fits[2];
     for (std::size_t subset = 0; subset < 2; ++subset)
         search_line<channels, steps, coding, parity>(values, subsets.weight[subset], effort,
-                                                     fits[subset]);
+                                                     lines.line[subset], fits[subset]);
     for (std::size_t lane = 0; lane < colors.count; ++lane) {
         Bc7Encoding& encoding = encodings[lane];
         const float error = fits[0].error[lane] + fits[1].error[lane] + extra[lane];
@@ -620,10 +311,10 @@ RELIEF_INLINE void try_subsets(const Bc7Colors& colors, unsigned mode, const Blo
         encoding.mode = mode;
         encoding.error = error;
         encoding.partition = static_cast<unsigned>(subsets.partition[lane]);
-        const unsigned bits = bc7_partitions_2[encoding.partition];
+        const unsigned bits = bptc_partitions_2[encoding.partition];
         copy_line<channels>(fits[0], lane, 0, 0, encoding);
         copy_line<channels>(fits[1], lane, 2, 0, encoding);
-        for (std::size_t t = 0; t < bc7_texels; ++t)
+        for (std::size_t t = 0; t < bptc_texels; ++t)
             encoding.index[t] = static_cast<std::uint8_t>(fits[bits >> t & 1U].index[t][lane]);
     }
 }
@@ -635,10 +326,10 @@ RELIEF_INLINE void search_encodings(const Bc7Colors& colors, BlockQuality qualit
     const bool is_fast = quality == BlockQuality::fast;
     if (!is_fast) try_mode_5(colors, effort, encodings);
     // The error of alpha in modes that store none, whose alpha is 255.
-    Bc7Lanes alpha_error;
+    BptcLanes alpha_error;
     alpha_error.fill(0.0F);
-    for (std::size_t t = 0; t < bc7_texels; ++t) {
-        for (std::size_t lane = 0; lane < bc7_lanes; ++lane) {
+    for (std::size_t t = 0; t < bptc_texels; ++t) {
+        for (std::size_t lane = 0; lane < bptc_lanes; ++lane) {
             const float rest = 255.0F - colors.channel[3][t][lane];
             alpha_error[lane] += rest * rest;
         }
@@ -652,27 +343,29 @@ RELIEF_INLINE void search_encodings(const Bc7Colors& colors, BlockQuality qualit
     }
     PartitionChoice partitions;
     if (has_opaque) {
-        choose_partitions<3>({{&colors.channel[0], &colors.channel[1], &colors.channel[2]}},
+        choose_partitions<3>({{&colors.channel[0], &colors.channel[1], &colors.channel[2]}}, 64,
                              effort.partitions, partitions);
         for (std::size_t k = 0; k < effort.partitions; ++k) {
             const BlockSubsets subsets(partitions.number[k]);
+            const SubsetLines<3> lines(colors, subsets);
             try_subsets<3, 7, EndCoding{6, true}, Parity::of_subset>(
-                colors, 1, subsets, alpha_error, effort, encodings);
+                colors, 1, subsets, lines, alpha_error, effort, encodings);
             if (is_fast) continue;
-            try_subsets<3, 3, EndCoding{7, true}, Parity::of_ends>(colors, 3, subsets, alpha_error,
-                                                                   effort, encodings);
+            try_subsets<3, 3, EndCoding{7, true}, Parity::of_ends>(colors, 3, subsets, lines,
+                                                                   alpha_error, effort, encodings);
         }
     }
     if (!has_alpha || is_fast) return;
-    Bc7Lanes none;
+    BptcLanes none;
     none.fill(0.0F);
     choose_partitions<4>(
-        {{&colors.channel[0], &colors.channel[1], &colors.channel[2], &colors.channel[3]}},
+        {{&colors.channel[0], &colors.channel[1], &colors.channel[2], &colors.channel[3]}}, 64,
         effort.partitions, partitions);
     for (std::size_t k = 0; k < effort.partitions; ++k) {
         const BlockSubsets subsets(partitions.number[k]);
-        try_subsets<4, 3, EndCoding{5, true}, Parity::of_ends>(colors, 7, subsets, none, effort,
-                                                               encodings);
+        const SubsetLines<4> lines(colors, subsets);
+        try_subsets<4, 3, EndCoding{5, true}, Parity::of_ends>(colors, 7, subsets, lines, none,
+                                                               effort, encodings);
     }
 }
 

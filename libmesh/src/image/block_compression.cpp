@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// BC4 and BC5: encodes and decodes blocks of one or two channels. bc7_blocks.cpp has BC7, and
-// bc1_blocks.cpp BC1 and BC3.
+// BC4 and BC5: encodes and decodes blocks of one or two channels. bc7_blocks.cpp has BC7,
+// bc6h_blocks.cpp BC6H, and bc1_blocks.cpp BC1 and BC3.
 //
 // A block of a channel has two codes of 8 bits, and 3 bits per texel that select one of 8 values:
 // the codes and 6 values between them, or, in the other order of the codes, the codes, 4 values
@@ -24,6 +24,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "image/bc6h_blocks.h"
 #include "image/color_blocks.h"
 #include "image/normal_coding.h"
 #include "image/texel_loops.h"
@@ -716,6 +717,10 @@ void check_size(int width, int height) {
             fmt::format("the image has {} x {} texels, but needs at least 1 x 1", width, height));
 }
 
+bool is_bc6h(BlockFormat format) {
+    return format == BlockFormat::bc6h || format == BlockFormat::bc6h_sfloat;
+}
+
 std::vector<std::byte> encode_channels(const ImageView& image, BlockFormat format,
                                        BlockQuality quality, Report& report) {
     const GroupOptions options{
@@ -750,6 +755,8 @@ int channels_of(BlockFormat format) {
         case BlockFormat::bc5_snorm:
             return 2;
         case BlockFormat::bc1:
+        case BlockFormat::bc6h:
+        case BlockFormat::bc6h_sfloat:
             return 3;
         default:
             return 4;
@@ -770,6 +777,7 @@ std::vector<std::byte> encode_blocks(const ImageView& image, BlockFormat format,
                                      BlockQuality quality, Report& report) {
     check_size(image.width, image.height);
     if (format == BlockFormat::bc7) return encode_bc7(image, quality, report);
+    if (is_bc6h(format)) return encode_bc6h(image, format, quality, report);
     if (channels_of(format) > 2) return encode_color_blocks(image, format, quality, report);
     if (image.channels != channels_of(format)) {
         throw InvalidInput(fmt::format("{} has {} channels, not {}", enum_name(format),
@@ -803,6 +811,7 @@ Image decode_blocks(std::span<const std::byte> blocks, BlockFormat format, int w
                                        enum_name(format), size, blocks.size()));
     }
     if (format == BlockFormat::bc7) return decode_bc7(blocks, width, height);
+    if (is_bc6h(format)) return decode_bc6h(blocks, format, width, height);
     if (channels_of(format) > 2) return decode_color_blocks(blocks, format, width, height);
     const auto channels = static_cast<std::size_t>(channels_of(format));
     const auto columns = static_cast<std::size_t>(width);

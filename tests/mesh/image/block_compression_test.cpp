@@ -586,7 +586,7 @@ Image mixed_colors(bool has_alpha) {
     for (std::size_t y = 0; y < 12; ++y) {
         for (std::size_t x = 0; x < 4 * 128; ++x) {
             const std::size_t texel = 4 * (y % 4) + x % 4;
-            const unsigned bits = detail::bc7_partitions_2[x / 4 % 64];
+            const unsigned bits = detail::bptc_partitions_2[x / 4 % 64];
             const bool is_second = (bits >> texel & 1U) == 1;
             for (std::size_t c = 0; c < 4; ++c) {
                 state = 1664525U * state + 1013904223U;
@@ -609,9 +609,9 @@ Image mixed_colors(bool has_alpha) {
 std::vector<double> predicted_errors(const Image& image, std::size_t row, BlockQuality quality,
                                      std::array<int, 8>& modes) {
     std::vector<double> errors;
-    for (std::size_t first = 0; first < 128; first += detail::bc7_lanes) {
+    for (std::size_t first = 0; first < 128; first += detail::bptc_lanes) {
         detail::Bc7Colors colors{};
-        colors.count = detail::bc7_lanes;
+        colors.count = detail::bptc_lanes;
         for (std::size_t lane = 0; lane < colors.count; ++lane) {
             for (std::size_t t = 0; t < 16; ++t) {
                 const std::size_t texel = (4 * row + t / 4) * 512 + 4 * (first + lane) + t % 4;

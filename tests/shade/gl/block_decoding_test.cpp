@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The block decoder against that of OpenGL (Mesa) on random blocks of BC1, BC3, BC4, BC5 and all
-// modes of BC7.
+// modes of BC6H and BC7.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,10 +20,18 @@
 namespace relief::shade::gl {
 namespace {
 
-constexpr int texels_across = 256;     ///< 4096 blocks.
-constexpr GLenum bptc_unorm = 0x8E8C;  // GL_COMPRESSED_RGBA_BPTC_UNORM, of OpenGL 4.2.
+constexpr int texels_across = 256;  ///< 4096 blocks.
+// GL_COMPRESSED_RGBA_BPTC_UNORM, RGB_BPTC_SIGNED_FLOAT and RGB_BPTC_UNSIGNED_FLOAT, of OpenGL 4.2.
+constexpr GLenum bptc_unorm = 0x8E8C;
+constexpr GLenum bptc_signed_float = 0x8E8E;
+constexpr GLenum bptc_unsigned_float = 0x8E8F;
 
-/// Random blocks; those of BC7 have all modes equally often.
+/// The numbers of the modes of BC6H, of 2 or 5 bits, and of the reserved modes.
+constexpr std::array<unsigned, 18> bc6h_modes = {0x00, 0x01, 0x02, 0x06, 0x0A, 0x0E,
+                                                 0x12, 0x16, 0x1A, 0x1E, 0x03, 0x07,
+                                                 0x0B, 0x0F, 0x13, 0x17, 0x1B, 0x1F};
+
+/// Random blocks; those of BC6H and BC7 have all modes equally often.
 std::vector<std::byte> random_blocks(BlockFormat format) {
     std::vector<std::byte> blocks(block_data_size(format, texels_across, texels_across));
     std::uint32_t state = 1;
@@ -35,6 +43,12 @@ std::vector<std::byte> random_blocks(BlockFormat format) {
         const unsigned mode = static_cast<unsigned>(i / 16 % 8);
         const auto kept = std::to_integer<unsigned>(blocks[i]) & (0xFFU << (mode + 1));
         blocks[i] = static_cast<std::byte>((kept | 1U << mode) & 0xFFU);
+    }
+    const bool is_bc6h = format == BlockFormat::bc6h || format == BlockFormat::bc6h_sfloat;
+    for (std::size_t i = 0; is_bc6h && i < blocks.size(); i += 16) {
+        const unsigned mode = bc6h_modes[i / 16 % bc6h_modes.size()];
+        const auto kept = std::to_integer<unsigned>(blocks[i]) & (mode < 2 ? 0xFCU : 0xE0U);
+        blocks[i] = static_cast<std::byte>(kept | mode);
     }
     return blocks;
 }
@@ -161,6 +175,31 @@ TEST_P(BlockDecoding, Bc7) {
         different[block % 8] += std::abs(code - static_cast<float>(samples[i])) > 0.01F ? 1 : 0;
     }
     EXPECT_THAT(different, testing::Each(0U)) << "by mode";
+}
+
+TEST_P(BlockDecoding, Bc6h) {
+    if (!has_extension("GL_ARB_texture_compression_bptc"))
+        GTEST_SKIP() << "this OpenGL does not decode BC6H";
+    struct Case {
+        BlockFormat format;
+        GLenum internal;
+    };
+    for (const Case& each : {Case{BlockFormat::bc6h, bptc_unsigned_float},
+                             Case{BlockFormat::bc6h_sfloat, bptc_signed_float}}) {
+        const auto blocks = random_blocks(each.format);
+        const auto expected = decoded_by_gl(blocks, each.internal, GL_RGB, 3);
+        const Image image = decode_blocks(blocks, each.format, texels_across, texels_across);
+        const auto samples = image.as<float>();
+        ASSERT_EQ(samples.size(), expected.size());
+        std::array<std::size_t, bc6h_modes.size()> different{};
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            const std::size_t texel = i / 3;
+            const std::size_t block =
+                texel / texels_across / 4 * (texels_across / 4) + texel % texels_across / 4;
+            different[block % bc6h_modes.size()] += samples[i] != expected[i] ? 1 : 0;
+        }
+        EXPECT_THAT(different, testing::Each(0U)) << enum_name(each.format) << ", by mode";
+    }
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Block compression for GPUs: BC1, BC3, BC4, BC5 and BC7, encoded from exact data and decoded.
+/// Block compression for GPUs: BC1, BC3, BC4, BC5, BC6H and BC7, encoded from exact data and
+/// decoded.
 ///
-/// A block stores 4 x 4 texels in 8 bytes (BC1, BC4) or 16 bytes (BC3, BC5, BC7). Files:
+/// A block stores 4 x 4 texels in 8 bytes (BC1, BC4) or 16 bytes (BC3, BC5, BC6H, BC7). Files:
 /// texture_file.h. Maps with their mip levels: map_texture.h.
 /// Tests: tests/mesh/image/block_compression_test.cpp.
 #pragma once
@@ -31,6 +32,9 @@ enum class BlockFormat {
     bc1,        ///< Three channels: two colors of 16 bits per block, and two between them.
     bc1a,       ///< The same with alpha that is 0 or 1.
     bc3,        ///< Four channels: colors as in bc1, and alpha as in bc4.
+    /// Three channels from 0 to 65504, with steps of half floats: for colors above 1, and heights.
+    bc6h,
+    bc6h_sfloat,  ///< The same from -65504 to 65504, with half of the codes for each sign.
 };
 
 template <>
@@ -42,7 +46,9 @@ inline constexpr auto enum_names<BlockFormat> =
                                           {"bc7", BlockFormat::bc7},
                                           {"bc1", BlockFormat::bc1},
                                           {"bc1a", BlockFormat::bc1a},
-                                          {"bc3", BlockFormat::bc3}});
+                                          {"bc3", BlockFormat::bc3},
+                                          {"bc6h", BlockFormat::bc6h},
+                                          {"bc6h-sfloat", BlockFormat::bc6h_sfloat}});
 
 /// The time that encoding may take. The bytes do not depend on threads or processors.
 enum class BlockQuality {
@@ -72,9 +78,12 @@ std::size_t block_data_size(BlockFormat format, int width, int height);
 /// \param image  one channel for BC4, two for BC5, three for bc1, three (alpha is 1) or four for
 /// BC7,
 ///         bc1a and BC3; any number of bits. bc1a stores an alpha below 0.5 as transparent black.
-///         Signed formats take n from -1 to 1 coded as (n + 1) / 2 in float, and with
+///         BC6H: three channels, whose errors count relative to their size, or one, which all three
+///         channels store, and whose errors count absolutely; integers are from 0 to 1. Other
+///         signed formats take n from -1 to 1 coded as (n + 1) / 2 in float, and with
 ///         FlatCode::middle in 8 and 16 bits
-/// \param report  counts samples that are not finite, which become 0 (of float images)
+/// \param report  counts samples that are not finite, which become 0 (of float images), and texels
+///         beyond the range of BC6H
 /// \return blocks row by row, row 0 at the top. Values beyond the format's range are clamped. If
 ///         the size is no multiple of 4, the last texels of rows and columns are repeated
 /// \throws InvalidInput if the image is empty or has another number of channels
@@ -112,7 +121,8 @@ std::vector<std::byte> encode_normal_blocks(const ImageView& normals,
 /// \return BC4, BC5: 16 bits per sample, rounded from the exact values between the codes; signed
 ///         formats are coded with FlatCode::middle. BC7: four channels of 8 bits, exact; blocks of
 ///         the reserved mode are transparent black. BC1, BC3: channels of 8 bits, rounded from the
-///         exact colors between the endpoints; decoders of GPUs may differ by one code
+///         exact colors between the endpoints; decoders of GPUs may differ by one code. BC6H: three
+///         channels of floats, exact; blocks of the reserved modes are black
 /// \throws InvalidInput if a size is not positive, or the number of bytes is another one
 ///
 /// Source: [Khronos Data Format].

@@ -96,7 +96,8 @@ struct MapTextureLevel {
     int width = 0;
     int height = 0;
     /// For normals, angles in degrees. For others, the root mean square of the errors of the
-    /// channels of a texel, in codes of 8 bits, with the PSNR; colors are compared sRGB-coded.
+    /// channels of a texel, in codes of 8 bits, with the PSNR; colors are compared sRGB-coded,
+    /// those above 1 by the same formula.
     ErrorStats error;
     /// Absent: all texels were measured, or none.
     std::optional<SampleConfidence> confidence{};

@@ -45,6 +45,8 @@ enum class TextureFormat {
     bc1,
     bc1a,
     bc3,
+    bc6h,
+    bc6h_sfloat,
 };
 
 template <>
@@ -58,7 +60,8 @@ inline constexpr auto enum_names<TextureFormat> = std::to_array<EnumName<Texture
      {"bc4", TextureFormat::bc4},         {"bc4-snorm", TextureFormat::bc4_snorm},
      {"bc5", TextureFormat::bc5},         {"bc5-snorm", TextureFormat::bc5_snorm},
      {"bc7", TextureFormat::bc7},         {"bc1", TextureFormat::bc1},
-     {"bc1a", TextureFormat::bc1a},       {"bc3", TextureFormat::bc3}});
+     {"bc1a", TextureFormat::bc1a},       {"bc3", TextureFormat::bc3},
+     {"bc6h", TextureFormat::bc6h},       {"bc6h-sfloat", TextureFormat::bc6h_sfloat}});
 
 /// Returns the number of channels of a format: 1 to 4.
 int channels_of(TextureFormat format);

@@ -38,20 +38,21 @@ struct VulkanFormat {
 };
 
 constexpr VulkanFormat vulkan_formats[] = {
-    {9, TextureFormat::r8, false},          {15, TextureFormat::r8, true},
-    {16, TextureFormat::rg8, false},        {22, TextureFormat::rg8, true},
-    {37, TextureFormat::rgba8, false},      {43, TextureFormat::rgba8, true},
-    {70, TextureFormat::r16, false},        {77, TextureFormat::rg16, false},
-    {91, TextureFormat::rgba16, false},     {76, TextureFormat::r16f, false},
-    {83, TextureFormat::rg16f, false},      {97, TextureFormat::rgba16f, false},
-    {100, TextureFormat::r32f, false},      {103, TextureFormat::rg32f, false},
-    {109, TextureFormat::rgba32f, false},   {139, TextureFormat::bc4, false},
-    {140, TextureFormat::bc4_snorm, false}, {141, TextureFormat::bc5, false},
-    {142, TextureFormat::bc5_snorm, false}, {145, TextureFormat::bc7, false},
-    {146, TextureFormat::bc7, true},        {131, TextureFormat::bc1, false},
-    {132, TextureFormat::bc1, true},        {133, TextureFormat::bc1a, false},
-    {134, TextureFormat::bc1a, true},       {137, TextureFormat::bc3, false},
-    {138, TextureFormat::bc3, true}};
+    {9, TextureFormat::r8, false},           {15, TextureFormat::r8, true},
+    {16, TextureFormat::rg8, false},         {22, TextureFormat::rg8, true},
+    {37, TextureFormat::rgba8, false},       {43, TextureFormat::rgba8, true},
+    {70, TextureFormat::r16, false},         {77, TextureFormat::rg16, false},
+    {91, TextureFormat::rgba16, false},      {76, TextureFormat::r16f, false},
+    {83, TextureFormat::rg16f, false},       {97, TextureFormat::rgba16f, false},
+    {100, TextureFormat::r32f, false},       {103, TextureFormat::rg32f, false},
+    {109, TextureFormat::rgba32f, false},    {139, TextureFormat::bc4, false},
+    {140, TextureFormat::bc4_snorm, false},  {141, TextureFormat::bc5, false},
+    {142, TextureFormat::bc5_snorm, false},  {145, TextureFormat::bc7, false},
+    {146, TextureFormat::bc7, true},         {131, TextureFormat::bc1, false},
+    {132, TextureFormat::bc1, true},         {133, TextureFormat::bc1a, false},
+    {134, TextureFormat::bc1a, true},        {137, TextureFormat::bc3, false},
+    {138, TextureFormat::bc3, true},         {143, TextureFormat::bc6h, false},
+    {144, TextureFormat::bc6h_sfloat, false}};
 
 /// "the Vulkan format 131 (BC1)"
 std::string vulkan_name(std::uint32_t number) {
@@ -75,7 +76,7 @@ const VulkanFormat& read_vulkan_format(std::uint32_t number, const std::filesyst
         if (format.number == number) return format;
     }
     throw FileError(name, fmt::format("has {}; of KTX2 files, relief reads R, RG and RGBA of 8, 16 "
-                                      "and 32 bits, BC1, BC3, BC4, BC5 and BC7",
+                                      "and 32 bits, BC1, BC3, BC4, BC5, BC6H and BC7",
                                       vulkan_name(number)));
 }
 
@@ -154,7 +155,7 @@ struct DfdSample {
 
 namespace dfd {
 constexpr std::uint32_t model_rgbsda = 1, model_bc1 = 128, model_bc3 = 130, model_bc4 = 131,
-                        model_bc5 = 132, model_bc7 = 134;
+                        model_bc5 = 132, model_bc6h = 133, model_bc7 = 134;
 constexpr std::uint32_t is_linear = 0x10, is_signed = 0x40, is_float = 0x80;
 constexpr std::uint32_t alpha = 15, bc1_with_alpha = 1;
 constexpr std::uint32_t minus_one = 0xBF800000, plus_one = 0x3F800000;  // As float.
@@ -171,6 +172,9 @@ std::uint32_t color_model(TextureFormat format) {
             return dfd::model_bc1;
         case BlockFormat::bc3:
             return dfd::model_bc3;
+        case BlockFormat::bc6h:
+        case BlockFormat::bc6h_sfloat:
+            return dfd::model_bc6h;
         default:
             return channels_of(*blocks) == 1 ? dfd::model_bc4 : dfd::model_bc5;
     }
@@ -180,6 +184,10 @@ std::vector<DfdSample> dfd_samples(const GpuTexture& texture) {
     std::vector<DfdSample> samples;
     const std::optional<BlockFormat> blocks = block_format_of(texture.format);
     if (blocks == BlockFormat::bc7) return {{0, 128, 0, 0, 0xFFFFFFFF}};
+    if (blocks == BlockFormat::bc6h) return {{0, 128, dfd::is_float, 0, dfd::plus_one}};
+    if (blocks == BlockFormat::bc6h_sfloat) {
+        return {{0, 128, dfd::is_float | dfd::is_signed, dfd::minus_one, dfd::plus_one}};
+    }
     if (blocks == BlockFormat::bc1) return {{0, 64, 0, 0, 0xFFFFFFFF}};
     if (blocks == BlockFormat::bc1a) return {{0, 64, dfd::bc1_with_alpha, 0, 0xFFFFFFFF}};
     if (blocks == BlockFormat::bc3) {

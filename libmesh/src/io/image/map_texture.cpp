@@ -29,11 +29,16 @@ constexpr TextureFormat color_formats[] = {TextureFormat::bc7, TextureFormat::bc
                                            TextureFormat::bc1a, TextureFormat::bc3,
                                            TextureFormat::rgba8};
 constexpr TextureFormat emission_formats[] = {TextureFormat::bc7, TextureFormat::bc1,
-                                              TextureFormat::rgba8, TextureFormat::rgba16f};
+                                              TextureFormat::rgba8, TextureFormat::rgba16f,
+                                              TextureFormat::bc6h};
 constexpr TextureFormat packed_formats[] = {TextureFormat::bc7, TextureFormat::bc1,
                                             TextureFormat::bc3, TextureFormat::rgba8};
 constexpr TextureFormat value_formats[] = {TextureFormat::bc4, TextureFormat::r8,
                                            TextureFormat::r16, TextureFormat::r16f};
+
+constexpr TextureFormat height_formats[] = {TextureFormat::bc4,  TextureFormat::r8,
+                                            TextureFormat::r16,  TextureFormat::r16f,
+                                            TextureFormat::bc6h, TextureFormat::bc6h_sfloat};
 
 constexpr glm::vec3 flat_normal = {0.5F, 0.5F, 1.0F};
 constexpr glm::vec3 neutral_one = {1.0F, 1.0F, 1.0F};
@@ -43,7 +48,7 @@ constexpr glm::vec3 neutral_zero = {0.0F, 0.0F, 0.0F};
 constexpr MapTextureKind texture_kind_table[] = {
     {MapKind::normal, 3, false, MipFilter::normals, normal_formats, flat_normal},
     {MapKind::object_normal, 3, false, MipFilter::normals, object_normal_formats, flat_normal},
-    {MapKind::height, 1, false, MipFilter::values, value_formats, neutral_half},
+    {MapKind::height, 1, false, MipFilter::values, height_formats, neutral_half},
     {MapKind::occlusion, 1, false, MipFilter::values, value_formats, neutral_one},
     {MapKind::curvature, 1, false, MipFilter::values, value_formats, neutral_half},
     {MapKind::color, 3, true, MipFilter::colors, color_formats, neutral_one},
@@ -220,9 +225,16 @@ std::vector<Image> levels_of(const Image& map, const MapTextureKind& kind,
 // Errors.
 
 /// Returns the errors of the texels of some blocks of a row. \param row  of blocks
+/// \param is_light  whether floats are linear colors, which are compared sRGB-coded
 BlockErrors value_errors(const Image& exact, std::size_t row, const EncodedRow& encoded,
-                         std::span<const std::size_t> columns) {
+                         std::span<const std::size_t> columns, bool is_light) {
     const Image decoded = decoded_columns(encoded, columns);
+    const auto compared_value = [&](auto sample, std::size_t channel) {
+        if constexpr (std::is_same_v<decltype(sample), float>) {
+            if (is_light && channel < 3) return static_cast<double>(srgb_from_linear(sample));
+        }
+        return static_cast<double>(sample);
+    };
     const std::size_t start = 4 * row * static_cast<std::size_t>(exact.width);
     const auto exact_channels = static_cast<std::size_t>(exact.channels);
     const auto decoded_channels = static_cast<std::size_t>(decoded.channels);
@@ -235,8 +247,8 @@ BlockErrors value_errors(const Image& exact, std::size_t row, const EncodedRow& 
                 double sum = 0.0;
                 for (std::size_t c = 0; c < compared; ++c) {
                     const double difference =
-                        static_cast<double>(a[(start + of_level) * exact_channels + c]) * a_scale -
-                        static_cast<double>(b[texel * decoded_channels + c]) * b_scale;
+                        compared_value(a[(start + of_level) * exact_channels + c], c) * a_scale -
+                        compared_value(b[texel * decoded_channels + c], c) * b_scale;
                     sum += difference * difference;
                 }
                 return static_cast<float>(std::sqrt(sum / static_cast<double>(compared)));
@@ -258,7 +270,7 @@ MeasuredError level_error(const Image& exact, const GpuTexture& texture, std::si
         const EncodedRow encoded{
             texture.format, bytes.subspan(begin, std::min(row_bytes, bytes.size() - begin)),
             exact.width, std::min(4, exact.height - 4 * static_cast<int>(row))};
-        if (!are_normals) return value_errors(exact, row, encoded, columns);
+        if (!are_normals) return value_errors(exact, row, encoded, columns, kind.is_color);
         return normal_block_errors(encoded, columns, exact.as<float>().data() + 3 * 4 * row * width,
                                    options.green);
     });
@@ -293,6 +305,8 @@ std::vector<std::byte> encoded_values(const Image& values, TextureFormat format,
                                       const MapTextureOptions& options, Report& report) {
     int channels = channels_of(format);
     if (channels == 4 && values.channels == 3) channels = 3;
+    // A map of one value has absolute errors.
+    if (block_format_of(format) && values.channels == 1) channels = 1;
     const int bits = block_format_of(format) ? values.bits() : bits_of(format);
     return encode_texture_level(with_layout(values, channels, bits), format, options.quality,
                                 report);
@@ -327,9 +341,17 @@ void check_map(const Image& map, const MapTextureKind& kind, TextureFormat forma
     }
 }
 
-/// Converts linear floats of colors for formats that store sRGB codes.
+/// Converts linear floats of colors for formats that store sRGB codes, and sRGB codes for formats
+/// that store linear floats.
 Image stored_colors(const Image& map, TextureFormat format, Report& report) {
-    if (map.bits() != 32 || !has_srgb_variant(format)) return map;
+    const bool is_stored_coded = has_srgb_variant(format);
+    const bool is_coded = map.bits() != 32;
+    if (is_coded == is_stored_coded) return map;
+    if (is_coded) {
+        Image coded = map;
+        coded.color_space = ColorSpace::srgb;
+        return to_linear(coded);
+    }
     const std::span<const float> samples = map.as<float>();
     const auto channels = static_cast<std::size_t>(map.channels);
     for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -82,6 +82,63 @@ TEST(MapTexture, ColorsAreAveragedInLinearLight) {
     EXPECT_TRUE(encoded.texture.is_srgb);
 }
 
+TEST(MapTexture, LinearFormatsOfEmissionStoreLight) {
+    // The sRGB code 188 is half of the light, and 0 and 255 have a mean of a half.
+    const Image coded = image_of<std::uint8_t>(2, 1, 3, ColorSpace::srgb, {0, 0, 0, 255, 255, 255});
+    const Image light =
+        image_of<float>(2, 1, 3, ColorSpace::linear, {0.0F, 0.0F, 0.0F, 1.0F, 1.0F, 1.0F});
+    for (const TextureFormat format : {TextureFormat::rgba16f, TextureFormat::bc6h}) {
+        MapTextureOptions options;
+        options.kind = MapKind::emission;
+        options.format = format;
+        for (const Image* map : {&coded, &light}) {
+            const MapTexture encoded = encode_map_texture(*map, options);
+            EXPECT_FALSE(encoded.texture.is_srgb);
+            const Image level = decode_texture_level(encoded.texture, 1);
+            EXPECT_FLOAT_EQ(level.as<float>()[0], 0.5F) << enum_name(format);
+            EXPECT_LT(encoded.levels[1].error.rms, 0.01) << enum_name(format);
+        }
+        const Image gray = image_of<std::uint8_t>(1, 1, 3, ColorSpace::srgb, {188, 188, 188});
+        const Image level = decode_texture_level(encode_map_texture(gray, options).texture, 0);
+        EXPECT_NEAR(level.as<float>()[0], 0.503F, 0.001F) << enum_name(format);
+    }
+}
+
+TEST(MapTexture, ErrorsOfLightAreMeasuredSrgbCodedAlsoAboveOne) {
+    const Image map = image_of<float>(2, 1, 3, ColorSpace::linear,
+                                      {16.0F, 16.0F, 16.0F, 16.003F, 16.003F, 16.003F});
+    MapTextureOptions options;
+    options.kind = MapKind::emission;
+    options.format = TextureFormat::rgba16f;
+    options.has_mips = false;
+    // 16.003 becomes 16: 0.003 of the light is 0.003 / 16 / 2.4 * 3.35 * 255 codes.
+    const double expected = 0.003 / 16.0 / 2.4 * 3.35 * 255.0 / std::sqrt(2.0);
+    EXPECT_NEAR(encode_map_texture(map, options).levels[0].error.rms, expected, 0.1 * expected);
+}
+
+TEST(MapTexture, HeightsInBc6hHaveSmallerErrorsThanInBc4) {
+    Image map = make_image(64, 64, 1, 32, ColorSpace::data);
+    for (std::size_t i = 0; i < 64 * 64; ++i) {
+        const auto x = static_cast<float>(i % 64);
+        const auto y = static_cast<float>(i / 64);
+        map.as<float>()[i] = 0.5F + 0.3F * std::sin(0.3F * x) * std::cos(0.25F * y);
+    }
+    const auto error = [&](TextureFormat format) {
+        MapTextureOptions options;
+        options.kind = MapKind::height;
+        options.format = format;
+        const MapTexture encoded = encode_map_texture(map, options);
+        return encoded.levels[0].error.rms;
+    };
+    // 16 values on the line of a block in place of 8.
+    EXPECT_LT(error(TextureFormat::bc6h), 0.6 * error(TextureFormat::bc4));
+    EXPECT_LT(error(TextureFormat::bc6h_sfloat), 0.6 * error(TextureFormat::bc4));
+    for (float& height : map.as<float>())
+        height -= 0.5F;
+    // Half of the codes up to 0.3 are below 0.004, so that slopes through 0 are no lines of codes.
+    EXPECT_LT(error(TextureFormat::bc6h_sfloat), 4.0);
+}
+
 TEST(MapTexture, ValuesAreAveragedAsTheyAre) {
     const Image map = image_of<std::uint8_t>(2, 1, 1, ColorSpace::data, {0, 200});
     MapTextureOptions options;

@@ -187,6 +187,30 @@ TEST(Ktx2File, DescriptorsOfBc1AndBc3) {
     EXPECT_EQ(number(bytes, 152 + 28), 63U << 16U | 1U << 24U);  // With alpha.
 }
 
+TEST(Ktx2File, DescriptorsOfBc6h) {
+    write_texture(temporary("bc6h.ktx2"), texture_of(TextureFormat::bc6h));
+    auto bytes = bytes_of(temporary("bc6h.ktx2"));
+    EXPECT_EQ(number(bytes, 12), 143U);  // BC6H_UFLOAT_BLOCK
+    EXPECT_EQ(number(bytes, 16), 1U);
+    EXPECT_EQ(number(bytes, 152 + 12), 133U | 1 << 8 | 1 << 16);
+    EXPECT_EQ(number(bytes, 152 + 16), 0x0303U);
+    EXPECT_EQ(number(bytes, 152 + 20), 16U);
+    EXPECT_EQ(number(bytes, 152 + 28), 127U << 16U | 0x80U << 24U);  // Float.
+    EXPECT_EQ(number(bytes, 152 + 36), 0U);
+    EXPECT_EQ(number(bytes, 152 + 40), 0x3F800000U);
+
+    write_texture(temporary("bc6h-sfloat.ktx2"), texture_of(TextureFormat::bc6h_sfloat));
+    bytes = bytes_of(temporary("bc6h-sfloat.ktx2"));
+    EXPECT_EQ(number(bytes, 12), 144U);                              // BC6H_SFLOAT_BLOCK
+    EXPECT_EQ(number(bytes, 152 + 28), 127U << 16U | 0xC0U << 24U);  // Signed float.
+    EXPECT_EQ(number(bytes, 152 + 36), 0xBF800000U);
+
+    GpuTexture coded = texture_of(TextureFormat::bc6h);
+    coded.is_srgb = true;
+    EXPECT_EQ(message_of<InvalidInput>([&] { write_texture(temporary("a.ktx2"), coded); }),
+              "there is no sRGB variant of bc6h");
+}
+
 TEST(Ktx2File, DescriptorOfBc3ThatContradictsTheFormatIsRefused) {
     GpuTexture colors = texture_of(TextureFormat::bc3);
     colors.is_srgb = true;
@@ -205,7 +229,7 @@ TEST(Ktx2File, DescriptorOfBc3ThatContradictsTheFormatIsRefused) {
     EXPECT_THAT(error(12, 132), HasSubstr("contradicts the Vulkan format 132 (BC1)"));
 }
 
-TEST(DdsFile, FormatsOfBc1AndBc3) {
+TEST(DdsFile, FormatsOfColors) {
     struct Case {
         TextureFormat format;
         bool is_srgb;
@@ -214,7 +238,8 @@ TEST(DdsFile, FormatsOfBc1AndBc3) {
     for (const Case& each :
          {Case{TextureFormat::bc1, false, 71}, Case{TextureFormat::bc1, true, 72},
           Case{TextureFormat::bc1a, true, 72}, Case{TextureFormat::bc3, true, 78},
-          Case{TextureFormat::bc7, true, 99}}) {
+          Case{TextureFormat::bc7, true, 99}, Case{TextureFormat::bc6h, false, 95},
+          Case{TextureFormat::bc6h_sfloat, false, 96}}) {
         GpuTexture texture = texture_of(each.format);
         texture.is_srgb = each.is_srgb;
         write_texture(temporary("color.dds"), texture);
