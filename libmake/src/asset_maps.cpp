@@ -32,6 +32,12 @@ std::string layer_name(LayerKind kind) {
             return "color";
         case LayerKind::surface:
             return "orm";
+        case LayerKind::bent_normal:
+            return "bent";
+        case LayerKind::thickness:
+            return "thickness";
+        case LayerKind::id:
+            return "ids";
         case LayerKind::emission:
             break;
     }

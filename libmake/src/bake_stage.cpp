@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bakes the maps of an asset: one pass for all properties of the surface, and one of a quarter of
-// the size for occlusion. Properties that are the same everywhere become factors.
-// Tests: tests/make/asset_maps_test.cpp.
+// the size for occlusion, bent normals and thickness. Properties that are the same everywhere
+// become factors. Tests: tests/make/asset_maps_test.cpp.
 #include "bake_stage.h"
 
 #include <algorithm>
@@ -140,10 +140,11 @@ class LayerMap {
             encode_layer(values, rows.states, coding_, has_opacity_, first, report,
                          has_opacity_ ? rows.opacity : std::span<float>());
         append(image_, codes);
-        if (coding_.bits == 8) measure(values, codes, rows.states);
+        if (coding_.bits == 8 && coding_.kind != LayerKind::id) measure(values, codes, rows.states);
     }
 
-    /// Returns whether a channel of a map of 8 bits has one code in all texels of charts.
+    /// Returns whether a channel of a map of 8 bits, but not of ids, has one code in all texels of
+    /// charts.
     [[nodiscard]] bool is_uniform(std::size_t channel) const {
         return min_[channel] >= max_[channel];
     }
@@ -239,6 +240,25 @@ void darken_red(Image& map, const Image& other) {
 
 // The stage.
 
+/// Occlusion, bent normals and thickness vary slowly, and their rays cost most.
+constexpr int hemisphere_reduction = 4;
+
+constexpr int default_hemisphere_rays = 32;
+
+bool has_hemispheres(LayerKind kind) {
+    return kind == LayerKind::bent_normal || kind == LayerKind::thickness;
+}
+
+/// Returns the options of the layers for which rays are cast into hemispheres.
+BakeLayers hemispheres_of(const BakeLayers& layers) {
+    BakeLayers result;
+    result.normals = false;
+    result.occlusion = layers.occlusion;
+    result.bent_normals = layers.bent_normals;
+    result.thickness = layers.thickness;
+    return result;
+}
+
 class MapBaker {
   public:
     MapBaker(const AssetSource& source, const detail::BakedSource& baked,
@@ -255,9 +275,11 @@ class MapBaker {
   private:
     [[nodiscard]] BakeOptions bake_options() const;
     [[nodiscard]] Baker baker_of_parts(BakeOptions options, Report& report);
+    [[nodiscard]] glm::ivec2 hemisphere_size() const;
     void set_factors();
+    void add_layers(const Baker& baker);
     void bake_surface(const Baker& baker, Report& report);
-    [[nodiscard]] Image bake_occlusion(const Baker& baker, Report& report);
+    [[nodiscard]] std::optional<Image> bake_hemispheres(const Baker& baker, Report& report);
     void store_colors(LayerMap& map, Report& report);
     void store_surface(LayerMap& map, std::optional<Image> occlusion);
     void store_emission(LayerMap& map, double strength);
@@ -292,9 +314,16 @@ BakeOptions MapBaker::bake_options() const {
     layers.curvature = has(LayerKind::curvature);
     layers.positions = has(LayerKind::position);
     layers.position_from_mesh[3] = glm::dvec4(source_.origin, 1.0);
+    layers.ids = has(LayerKind::id);
+    const int rays =
+        options_.occlusion_rays > 0 ? options_.occlusion_rays : default_hemisphere_rays;
     if (options_.occlusion) layers.occlusion = {.rays = options_.occlusion_rays};
-    baking.map_count = options_.occlusion ? 2 : 1;
+    if (has(LayerKind::bent_normal)) layers.bent_normals = {.rays = rays};
+    if (has(LayerKind::thickness)) layers.thickness = {.rays = rays};
+    baking.map_count = layers.occlusion || layers.bent_normals || layers.thickness ? 2 : 1;
     baking.materials.push_back({&high_, source_.materials, {}, source_.otherwise});
+    if (layers.ids)
+        baking.ids.push_back({&high_, names_by_material(high_, source_.material_names)});
     return baking;
 }
 
@@ -302,6 +331,7 @@ BakeOptions MapBaker::bake_options() const {
 double range_of(LayerKind kind, const LayerBounds& bounds) {
     const double range = kind == LayerKind::height      ? bounds.height
                          : kind == LayerKind::curvature ? bounds.curvature
+                         : kind == LayerKind::thickness ? bounds.thickness
                                                         : bounds.position;
     return range > 0.0 ? range : 1.0;
 }
@@ -329,10 +359,26 @@ void MapBaker::set_factors() {
     set_emission(material, varying_.emission ? glm::vec3(0.0F) : first.emission);
 }
 
-/// Bakes all layers but occlusion.
+/// Adds the further layers.
+void MapBaker::add_layers(const Baker& baker) {
+    const LayerBounds bounds = baker.bounds(baker.options().map.layers);
+    for (const LayerKind kind : options_.layers) {
+        LayerCoding coding{kind, kind == LayerKind::id ? 8 : 16, range_of(kind, bounds)};
+        if (kind == LayerKind::id) coding.ids = baker.ids();
+        further_.emplace_back(coding, has_hemispheres(kind) ? hemisphere_size() : options_.size);
+    }
+}
+
+glm::ivec2 MapBaker::hemisphere_size() const {
+    return glm::max(options_.size / hemisphere_reduction, glm::ivec2(1));
+}
+
+/// Bakes all layers without rays into hemispheres.
 void MapBaker::bake_surface(const Baker& baker, Report& report) {
     BakeMapOptions map = baker.options().map;
     map.layers.occlusion.reset();
+    map.layers.bent_normals.reset();
+    map.layers.thickness.reset();
     map.measures_missed = true;
     const LayerBounds bounds = baker.bounds(map.layers);
     const glm::ivec2& size = options_.size;
@@ -346,10 +392,9 @@ void MapBaker::bake_surface(const Baker& baker, Report& report) {
     if (map.layers.surface) add(surface_, LayerKind::surface, 1.0, false);
     if (map.layers.emission)
         add(emission_, LayerKind::emission, std::max(1.0, bounds.emission), false);
-    for (const LayerKind kind : options_.layers)
-        further_.emplace_back(LayerCoding{kind, 16, range_of(kind, bounds)}, size);
-    for (LayerMap& layer : further_)
-        maps.push_back(&layer);
+    for (LayerMap& layer : further_) {
+        if (!has_hemispheres(layer.coding().kind)) maps.push_back(&layer);
+    }
     asset_.normal_map = empty_map(size, 3, options_.normal_bits, ColorSpace::data);
     if (options_.keep_baked_normals)
         asset_.baked_normals = empty_map(size, 3, 16, ColorSpace::data);
@@ -363,25 +408,49 @@ void MapBaker::bake_surface(const Baker& baker, Report& report) {
     asset_.bake = baker.bake(map, take, report, options_.execution);
 }
 
-/// Occlusion varies slowly, and its rays cost most.
-constexpr int occlusion_reduction = 4;
+/// Returns a finding about a map of the reduced size.
+Finding of_reduced_map(Finding finding) {
+    finding.element = "texel of the quarter-size map";
+    return finding;
+}
 
-Image MapBaker::bake_occlusion(const Baker& baker, Report& report) {
+/// Bakes occlusion, bent normals and thickness. \return the occlusion, if it is requested
+std::optional<Image> MapBaker::bake_hemispheres(const Baker& baker, Report& report) {
     BakeMapOptions map = baker.options().map;
-    const OcclusionOptions rays = *map.layers.occlusion;
-    const glm::ivec2 size = glm::max(options_.size / occlusion_reduction, glm::ivec2(1));
+    const glm::ivec2 size = hemisphere_size();
     map.width = size.x;
     map.height = size.y;
     map.samples = 1;
-    map.padding = (options_.padding + occlusion_reduction - 1) / occlusion_reduction;
-    map.layers = {};
-    map.layers.normals = false;
-    map.layers.occlusion = rays;
-    LayerMap occlusion({LayerKind::occlusion, 8, 1.0}, size);
-    Report same;  // Its findings are those of the other maps, at another size.
-    const auto take = [&](const BakedRows& rows) { occlusion.add(rows, report); };
-    asset_.bake.occlusion_rays = baker.bake(map, take, same, options_.execution).occlusion_rays;
-    return std::move(occlusion.image());
+    map.padding = (options_.padding + hemisphere_reduction - 1) / hemisphere_reduction;
+    map.layers = hemispheres_of(map.layers);
+    std::optional<LayerMap> occlusion;
+    std::vector<LayerMap*> maps;
+    if (options_.occlusion) {
+        occlusion.emplace(LayerCoding{LayerKind::occlusion, 8, 1.0}, size);
+        maps.push_back(&*occlusion);
+    }
+    for (LayerMap& layer : further_) {
+        if (has_hemispheres(layer.coding().kind)) maps.push_back(&layer);
+    }
+    if (maps.empty()) return std::nullopt;
+    Report all;
+    const auto take = [&](const BakedRows& rows) {
+        for (LayerMap* layer : maps)
+            layer->add(rows, report);
+    };
+    const BakeResult result = baker.bake(map, take, all, options_.execution);
+    asset_.bake.occlusion_rays = result.occlusion_rays;
+    asset_.bake.thickness_rays = result.thickness_rays;
+    asset_.bake.open_thickness_rays = result.open_thickness_rays;
+    // Its other findings are those of the other maps, at another size.
+    for (const Finding& finding : all.findings()) {
+        if (finding.kind == "texel without an open ray" ||
+            finding.kind == "bent normal behind the surface" ||
+            finding.kind == "texel without a surface behind it")
+            report.add(of_reduced_map(finding));
+    }
+    if (!occlusion) return std::nullopt;
+    return std::move(occlusion->image());
 }
 
 constexpr std::size_t alpha_channel = 3;
@@ -438,8 +507,12 @@ void MapBaker::store_emission(LayerMap& map, double strength) {
 Baker MapBaker::baker_of_parts(BakeOptions options, Report& report) {
     parts_ = detail::divided(high_, baked_.high_parts, baked_.low_parts);
     options.materials.clear();
-    for (const Mesh& mesh : parts_.meshes)
+    options.ids.clear();
+    for (const Mesh& mesh : parts_.meshes) {
         options.materials.push_back({&mesh, source_.materials, {}, source_.otherwise});
+        if (options.map.layers.ids)
+            options.ids.push_back({&mesh, names_by_material(mesh, source_.material_names)});
+    }
     options.parts_occlude = true;
     // The decimation may have left little of a small part.
     options.allow_size_mismatch = true;
@@ -452,11 +525,11 @@ void MapBaker::bake(Report& report) {
                             : Baker(std::span(&high_, 1), asset_.mesh, bake_options(), report);
     asset_.agreement = baker.agreement();
     set_factors();
+    add_layers(baker);
     bake_surface(baker, report);
     if (asset_.bake.texels_baked == 0)
         throw InvalidInput("no texel of the maps was baked: no ray hits the source");
-    std::optional<Image> occlusion;
-    if (options_.occlusion) occlusion = bake_occlusion(baker, report);
+    std::optional<Image> occlusion = bake_hemispheres(baker, report);
     if (colors_) store_colors(*colors_, report);
     if (surface_) {
         store_surface(*surface_, std::move(occlusion));

@@ -69,6 +69,10 @@ void check(const AssetStart& start, bool keeps_texcoords) {
     require(!start.mesh.tangents.empty(), "tangents");
 }
 
+constexpr std::array further_layers = {LayerKind::height,    LayerKind::curvature,
+                                       LayerKind::position,  LayerKind::bent_normal,
+                                       LayerKind::thickness, LayerKind::id};
+
 void check(const AssetOptions& options) {
     if (options.triangles < 1)
         throw InvalidInput("the number of triangles must be at least 1, but is 0");
@@ -78,10 +82,11 @@ void check(const AssetOptions& options) {
                                        size.y, min_size, max_size));
     }
     for (const LayerKind kind : options.layers) {
-        if (kind != LayerKind::height && kind != LayerKind::curvature &&
-            kind != LayerKind::position) {
+        if (std::ranges::find(further_layers, kind) == further_layers.end()) {
             throw InvalidInput(fmt::format(
-                "further layers are height, curvature and position, not {}", enum_name(kind)));
+                "further layers are height, curvature, position, bent normals, thickness and ids, "
+                "not {}",
+                enum_name(kind)));
         }
         if (std::ranges::count(options.layers, kind) > 1)
             throw InvalidInput(fmt::format("the layer {} is requested twice", enum_name(kind)));

@@ -344,7 +344,7 @@ def make(
     samples: Literal[1, 4, 16, 64] = 1,
     match: Literal["auto", "name", "all"] = "auto",
     occlusion_rays: int = 32,
-    layers: Sequence[Literal["height", "curvature", "position"]] = (),
+    layers: Sequence[Literal["height", "curvature", "position", "bent", "thickness", "ids"]] = (),
     engine: Literal["gltf", "godot", "unity", "unreal"] = "gltf",
     loss: bool = False,
     more_views: Sequence[tuple[float, float]] = (),

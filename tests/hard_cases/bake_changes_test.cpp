@@ -57,7 +57,7 @@ std::vector<BakePair> bake_pairs() {
 }
 
 struct Baked {
-    std::vector<float> normals, heights, occlusion, curvature, positions;
+    std::vector<float> normals, heights, occlusion, curvature, positions, bent_normals, thickness;
     std::vector<TexelState> states;
 };
 
@@ -72,6 +72,8 @@ Baked baked_of(const Mesh& high, const Mesh& low, const BakeOptions& options) {
         append(map.occlusion, rows.occlusion);
         append(map.curvature, rows.curvature);
         append(map.positions, rows.positions);
+        append(map.bent_normals, rows.bent_normals);
+        append(map.thickness, rows.thickness);
         append(map.states, rows.states);
     });
     return map;
@@ -94,6 +96,8 @@ BakeOptions random_options(Dice& dice) {
     options.map.layers.curvature = dice.one_in(2);
     options.map.layers.positions = dice.one_in(2);
     if (dice.one_in(2)) options.map.layers.occlusion = OcclusionOptions{16, {}};
+    if (dice.one_in(2)) options.map.layers.bent_normals = OcclusionOptions{16, {}};
+    if (dice.one_in(2)) options.map.layers.thickness = ThicknessOptions{16, {}};
     return options;
 }
 
@@ -103,6 +107,9 @@ struct Tolerances {
     double degrees = 0.0;
     double length = 1e-12;   ///< Of heights, curvatures and positions.
     double occlusion = 0.0;  ///< Of the share of rays.
+    /// Of the components of bent normals; a ray of 16 turns one by any angle if few are open.
+    double bent = 1e-15;
+    double thickness = 1e-12;
     /// The share of texels beyond these limits: rays that meet an edge may hit its other triangle.
     double others = 0.0;
 };
@@ -142,6 +149,8 @@ std::string map_difference(const Baked& before, const Baked& after, double scale
     compare("curvature", before.curvature, after.curvature, 1.0 / scale, tolerances.length);
     compare("position", before.positions, after.positions, scale, tolerances.length);
     compare("occlusion", before.occlusion, after.occlusion, 1.0, tolerances.occlusion);
+    compare("bent normal", before.bent_normals, after.bent_normals, 1.0, tolerances.bent);
+    compare("thickness", before.thickness, after.thickness, scale, tolerances.thickness);
     if (double(others) <= tolerances.others * double(texels)) return "";
     return fmt::format("{} values, first {}", others, first);
 }
@@ -176,7 +185,15 @@ std::string changed_bake_difference(const BakePair& pair, const MeshChange& chan
     // One step of floats near 1. Weights on low triangles are floats, too.
     Tolerances tolerances;
     if (variant.has_rotated_corners) tolerances.length = 1.2e-7;
-    if (variant.has_rotated_corners && changes_low) tolerances = {0.001, 1e-5, 1.0 / 16.0, 0.04};
+    if (variant.has_rotated_corners) tolerances.bent = tolerances.thickness = 1e-6;
+    if (variant.has_rotated_corners && changes_low) {
+        tolerances = {.degrees = 0.001,
+                      .length = 1e-5,
+                      .occlusion = 1.0 / 16.0,
+                      .bent = 2.0,
+                      .thickness = 4.0 / 16.0,
+                      .others = 0.04};
+    }
     return map_difference(before, baked_of(high, low, options), double(variant.scale), tolerances);
 }
 

@@ -282,6 +282,25 @@ void hash_bake_layers(Hash& hash) {
     }
 }
 
+/// Bent normals, thickness and ids.
+void hash_bake_rays(Hash& hash) {
+    const Mesh low = with_frames(textured_torus(), {.tangents = TangentMethod::mikktspace}).mesh;
+    std::vector<Mesh> high = {subdivided(low, 1, {}, IgnoredReport())};
+    const auto half = static_cast<std::uint32_t>(high[0].triangles.size() / 2);
+    high[0].material_ranges = {{0, half, 1}, {half, half, 0}};
+    BakeOptions options = sized(24, 20);
+    options.map.samples = 4;
+    options.map.padding = 3;
+    options.map.layers = {.normals = false,
+                          .bent_normals = OcclusionOptions{.rays = 16, .distance = {}},
+                          .thickness = ThicknessOptions{.rays = 16, .distance = {}},
+                          .ids = true};
+    const BakedImage image = bake(high, low, options);
+    hash.add_all(image.bent_normals);
+    hash.add_all(image.thickness);
+    hash.add_all(image.ids);
+}
+
 /// Arbitrary codes, also those without direction: decoding, blending, lengths and exact resizing.
 void hash_converted_maps(Hash& hash) {
     Image codes = make_image(53, 31, 4, 8, ColorSpace::data);
@@ -360,7 +379,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Algorithm{"normal_maps", hash_normal_maps, 0xC4E3E1A0C4839E9C},
                     Algorithm{"converted_maps", hash_converted_maps, 0xC277AA09C6E1A1AE},
                     Algorithm{"bake", hash_bake, 0x6BFF5036ED217037},
-                    Algorithm{"bake_layers", hash_bake_layers, 0x4F4E3DDD159F9354}),
+                    Algorithm{"bake_layers", hash_bake_layers, 0x4F4E3DDD159F9354},
+                    Algorithm{"bake_rays", hash_bake_rays, 0xFBEB13D155D79167}),
     [](const testing::TestParamInfo<Algorithm>& row) { return std::string(row.param.name); });
 
 }  // namespace

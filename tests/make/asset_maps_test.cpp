@@ -122,13 +122,14 @@ TEST(AssetMaps, AreReadBackFromTheFile) {
 TEST(AssetMaps, AreTheSameForAnyNumberOfThreads) {
     AssetOptions options = options_without_occlusion();
     options.occlusion = true;
-    options.layers = {LayerKind::height, LayerKind::curvature, LayerKind::position};
+    options.layers = {LayerKind::height,      LayerKind::curvature, LayerKind::position,
+                      LayerKind::bent_normal, LayerKind::thickness, LayerKind::id};
     options.execution.threads = 1;
     const Asset one = make_asset(metal_and_plastic(), options);
     options.execution.threads = 3;
     const Asset three = make_asset(metal_and_plastic(), options);
     const std::vector<AssetMap> maps = maps_of(one), same = maps_of(three);
-    ASSERT_EQ(maps.size(), 6U);
+    ASSERT_EQ(maps.size(), 9U);
     for (std::size_t i = 0; i < maps.size(); ++i)
         EXPECT_EQ(maps[i].image->samples, same[i].image->samples) << maps[i].name;
 }
@@ -275,6 +276,54 @@ TEST(AssetLayers, HaveHeightsCurvatureAndPositions) {
     EXPECT_EQ(maps.back().name, "height");
     EXPECT_EQ(maps.back().metadata.at("relief:content"), "height map");
     EXPECT_TRUE(maps.back().slots.empty());
+}
+
+TEST(AssetLayers, HaveIdsWithTheNamesOfMaterials) {
+    AssetSource source = square_of({}, {});
+    source.material_names = {"left", "right"};
+    AssetOptions options = options_without_occlusion();
+    options.layers = {LayerKind::id};
+    const Asset asset = make_asset(source, options);
+    const AssetLayer& layer = asset.layers.at(0);
+    EXPECT_EQ(layer.coding.ids, surface_ids({"left", "right"}));
+    EXPECT_EQ(asset.bake.occlusion_rays + asset.bake.thickness_rays, 0U);
+    for (const auto& [column, id] : {std::pair(2, 0U), {29, 1U}}) {
+        const glm::u8vec3 color = layer.coding.ids.at(id).color;
+        EXPECT_EQ(texel(layer.image, column, 16), (std::vector<int>{color.r, color.g, color.b}));
+    }
+    EXPECT_EQ(maps_of(asset).back().name, "ids");
+}
+
+TEST(AssetLayers, HaveBentNormalsAndThicknessOfAQuarterOfTheSize) {
+    // The floor beside the wall of AssetMaps.OcclusionIsThatOfTheRays: bent normals lean away.
+    AssetSource source = square_of({}, {});
+    for (glm::vec3& position : source.mesh.positions) {
+        const float beyond = std::max(position.x - 0.5F, 0.0F);
+        position = {std::min(position.x, 0.5F), position.y, beyond};
+    }
+    source.mesh.normals.clear();
+    AssetOptions options = options_without_occlusion();
+    options.occlusion_rays = 0;
+    options.layers = {LayerKind::thickness, LayerKind::bent_normal};
+    const Asset asset = make_asset(source, options);
+    EXPECT_FALSE(asset.occlusion_map);
+    const Image& bent = asset.layers.at(1).image;
+    EXPECT_EQ(bent.width, side / 4);
+    EXPECT_EQ(bent.bits(), 16);
+    EXPECT_EQ(asset.layers[0].image.channels, 1);
+    // 32 rays without occlusion, for both.
+    EXPECT_EQ(asset.bake.occlusion_rays, asset.bake.thickness_rays);
+    EXPECT_GT(asset.bake.occlusion_rays, 0U);
+    const auto codes = bent.as<std::uint16_t>();
+    const std::size_t near = 3 * (std::size_t{4} * static_cast<std::size_t>(bent.width) + 3);
+    EXPECT_LT(codes[near], 30000) << "x, away from the wall";
+    EXPECT_GT(codes[near + 2], 40000);
+    // The sheet has no other side: everything is as thick as the rays are long.
+    EXPECT_DOUBLE_EQ(asset.layers[0].coding.range, 1.0);
+    std::size_t open = 0;
+    for (const StageReport& stage : asset.reports)
+        open += stage.report.count("texel without a surface behind it");
+    EXPECT_GT(open, 10U);
 }
 
 TEST(AssetLayers, AreThoseThatAreNotPartOfTheMaterial) {

@@ -92,6 +92,20 @@ TEST(EngineMaps, AreOnlyFurtherLayersForGltf) {
     EXPECT_EQ(info.metadata.at("relief:range"), "0.5");
 }
 
+TEST(EngineMaps, TurnTheGreenOfBentNormals) {
+    make::Asset asset = asset_of_one_texel();
+    const Image bent{1, 1, 3, ColorSpace::data, std::vector<std::uint16_t>{32768, 50000, 60000}};
+    asset.layers.push_back({{.kind = LayerKind::bent_normal, .bits = 16}, bent});
+    const test::TemporaryDirectory folder;
+    for (const auto& [engine, green, name] :
+         {std::tuple(Engine::unreal, 15535, "down"), {Engine::unity, 50000, "up"}}) {
+        write_map_files(engine, folder / "rock.glb", asset);
+        const Image written = read_image(folder / "rock_bent.png", ImageUse::data);
+        EXPECT_EQ(written.as<std::uint16_t>()[1], green);
+        EXPECT_EQ(read_image_info(folder / "rock_bent.png").metadata.at("relief:green"), name);
+    }
+}
+
 TEST(EngineMaps, AreAmongTheFilesThatAreAnnounced) {
     const test::TemporaryDirectory folder;
     for (const Engine engine : {Engine::gltf, Engine::godot, Engine::unity, Engine::unreal}) {

@@ -232,6 +232,100 @@ TEST(MeshBakeLayers, HeightsWithThePrintedStrengthGiveTheBakedNormals) {
     EXPECT_LT(sum, 0.15);
 }
 
+TEST(MeshBakeLayers, BentNormalsAreCodedAsTheMap) {
+    const Workplace workplace;
+    workplace.write_square("low.obj");
+    workplace.write("high.obj", raised_square());
+    const std::string line =
+        "relief-bake mesh high.obj low.obj out/map.png --size 4 --bent-normal-map out/b.png "
+        "--occlusion-map out/o.png --layer-bits 8 ";
+    const ProgramResult result = workplace.run(line + "--report out/report.json");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("1024 rays for occlusion and bent normals\n"));
+    EXPECT_THAT(result.out, HasSubstr("out/b.png: bent normals, 8 bit\n"));
+    using Bytes = std::vector<std::uint8_t>;
+    EXPECT_EQ(texel<std::uint8_t>(workplace, "out/b.png", 5), (Bytes{128, 128, 255}));
+    EXPECT_EQ(json::parse(workplace.read("out/report.json"))["occlusion_rays"], 1024);
+    auto said = read_image_info(workplace / "out/b.png").metadata;
+    EXPECT_EQ(said.at("relief:content"), "bent normals, tangent space");
+    EXPECT_EQ(said.at("relief:green"), "up");
+    ASSERT_EQ(workplace.run(line + "--green down --zero-code 128 --space world").exit_code, 0);
+    said = read_image_info(workplace / "out/b.png").metadata;
+    EXPECT_EQ(said.at("relief:content"), "bent normals, world space");
+    EXPECT_EQ(said.at("relief:flat"), "128");
+}
+
+/// A cube from (-1,-1,-0.75) to (1,1,0.25).
+std::string block() {
+    return "v -1 -1 -.75\nv 1 -1 -.75\nv 1 1 -.75\nv -1 1 -.75\nv -1 -1 .25\nv 1 -1 .25\n"
+           "v 1 1 .25\nv -1 1 .25\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\n"
+           "f 4 1 5 8\n";
+}
+
+TEST(MeshBakeLayers, ThicknessIsAShareOfItsDistance) {
+    const Workplace workplace;
+    workplace.write_square("low.obj");
+    workplace.write("high.obj", block());
+    const std::string line =
+        "relief-bake mesh high.obj low.obj out/map.png --size 4 --thickness-rays 16 ";
+    const ProgramResult result = workplace.run(
+        line + "--thickness-map out/t.png --thickness-distance 0.5 --report out/report.json");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("out/t.png: thickness, 16 bit, 0 to 0.5\n"));
+    EXPECT_THAT(result.out, HasSubstr("256 rays for thickness, of which "));
+    const json report = json::parse(workplace.read("out/report.json"));
+    EXPECT_EQ(report["thickness_rays"], 256);
+    EXPECT_EQ(report["maps"][0]["layers"][0]["range"], 0.5);
+    EXPECT_EQ(read_image_info(workplace / "out/t.png").metadata.at("relief:range"), "0.5");
+    // The middle of the block is 1 thick, twice the length of the rays. Those of texels at its
+    // corners leave it at the sides.
+    EXPECT_EQ(texel<std::uint16_t>(workplace, "out/t.png", 5), (Words{65535}));
+    EXPECT_LT(texel<std::uint16_t>(workplace, "out/t.png", 0)[0], 64500);
+    ASSERT_EQ(workplace.run(line + "--thickness-map out/t.exr").exit_code, 0);
+    const float middle = texel<float>(workplace, "out/t.exr", 5)[0];
+    EXPECT_GT(middle, 0.8F);
+    EXPECT_LT(middle, 1.3F);
+}
+
+TEST(MeshBakeLayers, IdsAreColorsOfMaterialsObjectsAndFiles) {
+    const Workplace workplace;
+    workplace.write_square("low.obj");
+    // The quarters of the square from the lower left: a material, another one, an object, a file.
+    const std::string corners =
+        "v -1 -1 0\nv 0 -1 0\nv 1 -1 0\nv -1 0 0\nv 0 0 0\nv 1 0 0\nv -1 1 0\nv 0 1 0\nv 1 1 "
+        "0\n";
+    workplace.write("high.mtl", "newmtl stone\nnewmtl wood\n");
+    workplace.write("high.obj", "mtllib high.mtl\n" + corners +
+                                    "o top\nf 4 5 8 7\nusemtl stone\nf 1 2 5 4\nusemtl wood\nf 2 3 "
+                                    "6 5\n");
+    workplace.write("rest.obj", corners + "f 5 6 9 8\n");
+    const std::string line =
+        "relief-bake mesh high.obj rest.obj low.obj out/map.png --size 4 --id-map out/ids.";
+    const ProgramResult result = workplace.run(line + "png --report out/report.json");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("out/ids.png: ids, 8 bit\n"));
+    const json ids = json::parse(workplace.read("out/report.json"))["maps"][0]["layers"][0]["ids"];
+    ASSERT_EQ(ids.size(), 4U);
+    const auto color_at = [&](std::size_t index) {
+        const auto color = texel<std::uint8_t>(workplace, "out/ids.png", index);
+        return fmt::format("#{:02x}{:02x}{:02x}", color[0], color[1], color[2]);
+    };
+    const std::vector<std::pair<std::string, std::size_t>> places = {
+        {"rest", 3}, {"stone", 12}, {"top", 0}, {"wood", 15}};
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        EXPECT_EQ(ids[i]["name"], places[i].first);
+        EXPECT_EQ(ids[i]["color"], color_at(places[i].second)) << places[i].first;
+        EXPECT_THAT(result.out, HasSubstr(color_at(places[i].second) + " " + places[i].first));
+    }
+    EXPECT_THAT(read_image_info(workplace / "out/ids.png").metadata.at("relief:ids"),
+                HasSubstr(" stone\n"));
+    ASSERT_EQ(workplace.run(line + "exr").exit_code, 0);
+    const auto code = texel<std::uint8_t>(workplace, "out/ids.png", 12);
+    const auto value = texel<float>(workplace, "out/ids.exr", 12);
+    for (std::size_t channel = 0; channel < 3; ++channel)
+        EXPECT_FLOAT_EQ(value[channel], static_cast<float>(code[channel]) / 255.0F);
+}
+
 TEST(MeshBakeLayers, HaveTheNamesOfTiles) {
     const Workplace workplace;
     workplace.write_square("low.obj");
@@ -262,7 +356,15 @@ TEST(MeshBakeLayerRefusal, LeavesAllFilesUnchanged) {
           "--curvature-range 1",
           2, "--curvature-range: has no effect on float files"},
          {"relief-bake mesh high.obj low.obj out/map.png --occlusion-rays 9", 2,
-          "--occlusion-rays, --occlusion-distance: have no effect without --occlusion-map"},
+          "--occlusion-rays, --occlusion-distance: have no effect without --occlusion-map or "
+          "--bent-normal-map"},
+         {"relief-bake mesh high.obj low.obj out/map.png --thickness-distance 1", 2,
+          "--thickness-rays, --thickness-distance: have no effect without --thickness-map"},
+         {"relief-bake mesh high.obj low.obj out/map.png --thickness-map out/t.png "
+          "--thickness-distance 0",
+          2, "--thickness-distance 0"},
+         {"relief-bake mesh high.obj low.obj out/map.png --id-map out/map.png", 1,
+          "low.obj: the map and ids would be the same file out/map.png"},
          {"relief-bake mesh high.obj low.obj out/map.png --occlusion-map out/o.png "
           "--occlusion-rays 0",
           2, "--occlusion-rays 0"},

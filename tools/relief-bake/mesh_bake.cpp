@@ -71,6 +71,8 @@ void add_result(BakeResult& all, const BakeResult& more) {
     all.samples += more.samples;
     all.rays += more.rays;
     all.occlusion_rays += more.occlusion_rays;
+    all.thickness_rays += more.thickness_rays;
+    all.open_thickness_rays += more.open_thickness_rays;
 }
 
 /// A baked map whose files are complete but not in the FileSet yet. They are deleted unless
@@ -282,6 +284,7 @@ void bake_models(const MeshBakeRequest& request, const BakeModels& models, Stage
     options.output_from_mesh = output_axes(request, models.world_from_low);
     options.map.layers.position_from_mesh[3] = glm::dvec4(models.origin, 1.0);
     options.materials = models.textures.materials();
+    options.ids = models.ids;
     options.map.layers.opacity = options.map.layers.colors && models.textures.alpha();
     options.cage = models.cage;
     std::optional<Baker> baker;
@@ -493,8 +496,16 @@ std::string layer_text(const WrittenLayer& layer) {
     if (coding.bits != 32 && coding.is_signed())
         text += fmt::format(", {:.6g} to {:.6g}", -coding.range, coding.range);
     if (coding.bits != 32 && coding.kind == LayerKind::color) text += ", sRGB";
+    if (coding.bits != 32 && coding.kind == LayerKind::thickness)
+        text += fmt::format(", 0 to {:.6g}", coding.range);
     if (layer.has_opacity) text += ", opacity in alpha";
     return text;
+}
+
+bool has_layer(const MeshBake& bake, LayerKind kind) {
+    return std::ranges::any_of(bake.maps.front().layers, [&](const WrittenLayer& layer) {
+        return layer.coding.kind == kind;
+    });
 }
 
 std::vector<std::string> layer_lines(const MeshBake& bake) {
@@ -505,6 +516,7 @@ std::vector<std::string> layer_lines(const MeshBake& bake) {
     }
     for (const WrittenLayer& layer : bake.maps.front().layers) {
         const LayerCoding& coding = layer.coding;
+        if (coding.kind == LayerKind::id) lines.push_back("ids: " + id_text(coding.ids));
         if (coding.kind != LayerKind::height) continue;
         lines.push_back(fmt::format("heights as a displacement: strength {:.7g}, midlevel {:.7g}",
                                     coding.strength(), coding.midlevel()));
@@ -514,8 +526,18 @@ std::vector<std::string> layer_lines(const MeshBake& bake) {
                             coding.strength(), bake.texel_size));
         }
     }
-    if (bake.all.occlusion_rays > 0)
-        lines.push_back(fmt::format("{} rays for occlusion", bake.all.occlusion_rays));
+    if (bake.all.occlusion_rays > 0) {
+        const bool has_occlusion = has_layer(bake, LayerKind::occlusion);
+        const bool has_bent = has_layer(bake, LayerKind::bent_normal);
+        lines.push_back(fmt::format("{} rays for {}", bake.all.occlusion_rays,
+                                    !has_occlusion ? "bent normals"
+                                    : has_bent     ? "occlusion and bent normals"
+                                                   : "occlusion"));
+    }
+    if (bake.all.thickness_rays > 0) {
+        lines.push_back(fmt::format("{} rays for thickness, of which {} hit nothing",
+                                    bake.all.thickness_rays, bake.all.open_thickness_rays));
+    }
     return lines;
 }
 
@@ -597,6 +619,8 @@ Json layer_json(const WrittenLayer& layer) {
         json["range"] = coding.range;
         json["zero"] = coding.zero_code();
     }
+    if (coding.bits != 32 && coding.kind == LayerKind::thickness) json["range"] = coding.range;
+    if (coding.kind == LayerKind::id) json["ids"] = ids_json(coding.ids);
     if (coding.kind == LayerKind::height) {
         json["strength"] = coding.strength();
         json["midlevel"] = coding.midlevel();
@@ -702,6 +726,8 @@ Summary summary_of(const MeshBakeRequest& request, const MeshBake& bake, const S
          {"samples", result.samples},
          {"rays", result.rays},
          {"occlusion_rays", result.occlusion_rays},
+         {"thickness_rays", result.thickness_rays},
+         {"open_thickness_rays", result.open_thickness_rays},
          {"rays_per_second", rate * 1e6}});
     summary.add(bake.maps.size() == 1 ? "map" : "maps", map_lines(request, bake),
                 {{"width", request.size.x},

@@ -95,6 +95,15 @@ constexpr LayerInfo all_layers[] = {
     {LayerKind::color, "--color-map",
      "Write the color of the high meshes: the product of vertex color, material color and "
      "texture. If a material is transparent, the fourth channel is the opacity."},
+    {LayerKind::bent_normal, "--bent-normal-map",
+     "Write the mean direction of the occlusion rays that hit nothing, in the space and with the "
+     "green and the code of zero of the normal map."},
+    {LayerKind::thickness, "--thickness-map",
+     "Write the mean distance to the surface behind, along rays into the high meshes: white is "
+     "--thickness-distance."},
+    {LayerKind::id, "--id-map",
+     "Write a flat color for each material of the high meshes; triangles without a material have "
+     "the color of their object, or of their file. The report lists the colors."},
 };
 
 const LayerInfo& layer_info(LayerKind kind) {
@@ -112,7 +121,7 @@ void add_layer_options(CLI::App& app, LayerOptions& options) {
     }
     add_choice(app, "--layer-bits", options.bits, Choices<int>{{"8", 8}, {"16", 16}, {"32", 32}},
                "Bits per channel of these files: 8 or 16 for .png; 8, 16 or 32 (float) for .tif; "
-               "32 for .exr. Default: 16, 8 for colors, and 32 for .exr.")
+               "32 for .exr. Default: 16, 8 for colors and ids, and 32 for .exr.")
         .group(group);
     const Range positive{1e-30, 1e30, ""};
     add_number(app, "--height-range", "H", options.height_range, positive,
@@ -127,8 +136,8 @@ void add_layer_options(CLI::App& app, LayerOptions& options) {
                "Coordinate of white in the same way. Default: the maximum of the high meshes.")
         .group(group);
     add_value(app, "--occlusion-rays", "N",
-              "Occlusion rays per texel, 1 to 65536, shared by its samples. Doubling N reduces the "
-              "error to 0.6 times. Default: 64.",
+              "Occlusion rays per texel, 1 to 65536, shared by its samples, and by occlusion and "
+              "bent normals. Doubling N reduces the error to 0.6 times. Default: 64.",
               [&options](const std::string& subject, const std::string& text) {
                   options.occlusion_rays = parse_integer(subject, text, 1, 65536);
               })
@@ -136,6 +145,16 @@ void add_layer_options(CLI::App& app, LayerOptions& options) {
     add_number(app, "--occlusion-distance", "D", options.occlusion_distance, {0.0, 1e30, ""},
                "Length of occlusion rays: surfaces farther away do not occlude. Default: half of "
                "the longest side of the bounding box of the high meshes.")
+        .group(group);
+    add_value(app, "--thickness-rays", "N",
+              "Rays of the thickness per texel, 1 to 65536, shared by its samples. Default: 64.",
+              [&options](const std::string& subject, const std::string& text) {
+                  options.thickness_rays = parse_integer(subject, text, 1, 65536);
+              })
+        .group(group);
+    add_number(app, "--thickness-distance", "D", options.thickness_distance, {1e-30, 1e30, ""},
+               "Length of the rays of the thickness, with which rays that hit nothing count. "
+               "Default: the longest side of the bounding box of the high meshes.")
         .group(group);
 }
 
@@ -160,9 +179,15 @@ void check(const LayerOptions& options) {
     check_range(options, LayerKind::curvature, options.curvature_range, "--curvature-range");
     check_range(options, LayerKind::position, options.position_range, "--position-range");
     if ((options.occlusion_rays || options.occlusion_distance) &&
-        !options.has(LayerKind::occlusion)) {
+        !options.has(LayerKind::occlusion) && !options.has(LayerKind::bent_normal)) {
         throw UsageError(
-            "--occlusion-rays, --occlusion-distance: have no effect without --occlusion-map");
+            "--occlusion-rays, --occlusion-distance: have no effect without --occlusion-map or "
+            "--bent-normal-map");
+    }
+    if ((options.thickness_rays || options.thickness_distance) &&
+        !options.has(LayerKind::thickness)) {
+        throw UsageError(
+            "--thickness-rays, --thickness-distance: have no effect without --thickness-map");
     }
 }
 
@@ -172,10 +197,15 @@ BakeLayers bake_layers_of(const LayerOptions& options) {
     layers.curvature = options.has(LayerKind::curvature);
     layers.positions = options.has(LayerKind::position);
     layers.colors = options.has(LayerKind::color);
-    if (options.has(LayerKind::occlusion)) {
-        layers.occlusion.emplace();
-        layers.occlusion->rays = options.occlusion_rays.value_or(layers.occlusion->rays);
-        layers.occlusion->distance = options.occlusion_distance;
+    layers.ids = options.has(LayerKind::id);
+    const OcclusionOptions occlusion{
+        .rays = options.occlusion_rays.value_or(OcclusionOptions{}.rays),
+        .distance = options.occlusion_distance};
+    if (options.has(LayerKind::occlusion)) layers.occlusion = occlusion;
+    if (options.has(LayerKind::bent_normal)) layers.bent_normals = occlusion;
+    if (options.has(LayerKind::thickness)) {
+        layers.thickness = {.rays = options.thickness_rays.value_or(ThicknessOptions{}.rays),
+                            .distance = options.thickness_distance};
     }
     return layers;
 }
@@ -557,7 +587,8 @@ int bits_of(const LayerOptions& options, LayerKind kind) {
                                      layer_info(kind).option, file.string()),
                          "use .png, .tif or .exr");
     }
-    const bool is_8_bit = kind == LayerKind::color && std::ranges::count(depths, 8) > 0;
+    const bool is_8_bit =
+        (kind == LayerKind::color || kind == LayerKind::id) && std::ranges::count(depths, 8) > 0;
     const int bits = options.bits.value_or(is_8_bit ? 8 : depths.front());
     check_depth("--layer-bits", bits, file, depths);
     return bits;

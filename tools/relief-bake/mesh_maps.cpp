@@ -382,6 +382,8 @@ double layer_range(LayerKind kind, const LayerOptions& options, const LayerBound
                 bits_of(options, kind) == 8 ? bounds.curvature_p99 : bounds.curvature);
         case LayerKind::position:
             return options.position_range.value_or(bounds.position);
+        case LayerKind::thickness:
+            return bounds.thickness;
         default:
             return 1.0;
     }
@@ -427,15 +429,35 @@ std::vector<WrittenLayer> planned_layers(const MeshBakeRequest& request, const M
     std::vector<WrittenLayer> planned;
     if (request.layers.files.empty()) return planned;
     const LayerBounds bounds = baker.bounds(layers);
+    const NormalMapFormat format = format_of(request.map, request.output);
     for (const auto& [kind, file] : request.layers.files) {
         const double range = layer_range(kind, request.layers, bounds);
         // If all values are 0, any range stores them.
         const bool is_usable = range > 0.0 && std::isfinite(range);
-        planned.push_back({plan.named(file),
-                           {kind, bits_of(request.layers, kind), is_usable ? range : 1.0},
-                           kind == LayerKind::color && layers.opacity});
+        LayerCoding coding{kind, bits_of(request.layers, kind), is_usable ? range : 1.0};
+        coding.normal_format = {.green = format.green, .flat = format.flat};
+        coding.space = request.bake.space;
+        if (kind == LayerKind::id) coding.ids = baker.ids();
+        planned.push_back(
+            {plan.named(file), std::move(coding), kind == LayerKind::color && layers.opacity});
     }
     return planned;
+}
+
+std::string id_text(const std::vector<SurfaceId>& ids) {
+    constexpr std::size_t max_shown = 8;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(max_shown, ids.size()); ++i)
+        text += fmt::format("{}{} {}", i > 0 ? ", " : "", color_text(ids[i]), ids[i].name);
+    if (ids.size() > max_shown)
+        text += fmt::format(", and {} more (see --report)", ids.size() - max_shown);
+    return text;
+}
+
+Json ids_json(const std::vector<SurfaceId>& ids) {
+    return json_list(ids, [](const SurfaceId& id) -> Json {
+        return {{"name", id.name}, {"color", color_text(id)}};
+    });
 }
 
 struct MapWriter::Files {

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "common/summary.h"
 #include "mesh_request.h"
 #include "relief/mesh/bake.h"
 
@@ -100,6 +101,12 @@ struct WrittenLayer {
 /// give; for curvature in 8 bits, the value that 99% of the area does not exceed.
 std::vector<WrittenLayer> planned_layers(const MeshBakeRequest& request, const MapPlan& plan,
                                          const Baker& baker, const BakeLayers& layers);
+
+/// "#a0b1c2 stone, #102030 wood, and 12 more (see --report)"
+std::string id_text(const std::vector<SurfaceId>& ids);
+
+/// [{"name": "stone", "color": "#a0b1c2"}, ...]
+Json ids_json(const std::vector<SurfaceId>& ids);
 
 /// Writes the files of one map, row by row: normals and layers.
 class MapWriter {

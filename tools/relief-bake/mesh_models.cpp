@@ -58,6 +58,63 @@ Mesh join_parts(const std::filesystem::path& file, MapModel model) {
     return about(file, [&] { return joined(std::move(model.parts)); });
 }
 
+/// Appends the names of some of a part's triangles.
+/// \param first  the number of triangles before
+void append_names(const std::vector<NamedTriangles>& of_part,
+                  std::span<const std::uint32_t> triangles, std::size_t first,
+                  std::vector<NamedTriangles>& names) {
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const auto next =
+            std::ranges::upper_bound(of_part, triangles[i], {}, &NamedTriangles::first_triangle);
+        const std::string& name = std::prev(next)->name;
+        if (names.empty() || names.back().name != name)
+            names.push_back({static_cast<std::uint32_t>(first + i), name});
+    }
+}
+
+/// The names of the triangles of the high meshes, which are made in the same order.
+class IdNames {
+  public:
+    IdNames(const MeshBakeRequest& request, const std::vector<MapModel>& models) {
+        if (!request.layers.has(LayerKind::id)) return;
+        for (std::size_t i = 0; i < models.size(); ++i) {
+            std::vector<std::vector<NamedTriangles>>& parts = parts_.emplace_back();
+            for (const MapModelPart& part : models[i].parts)
+                parts.push_back(id_names(part, models[i].materials, request.high[i]));
+        }
+    }
+
+    void add_piece(const HighPiece& piece) {
+        if (parts_.empty()) return;
+        append_names(parts_[piece.model][piece.part], piece.triangles, 0, meshes_.emplace_back());
+    }
+    void add_joined(std::size_t model, const std::vector<MapModelPart>& parts) {
+        if (parts_.empty()) return;
+        std::vector<NamedTriangles>& names = meshes_.emplace_back();
+        std::size_t first = 0;
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            for (const NamedTriangles& named : parts_[model][i]) {
+                if (parts[i].mesh.triangles.empty()) continue;
+                names.push_back(
+                    {static_cast<std::uint32_t>(first + named.first_triangle), named.name});
+            }
+            first += parts[i].mesh.triangles.size();
+        }
+    }
+
+    [[nodiscard]] std::vector<HighIds> of_meshes(const std::vector<Mesh>& meshes) {
+        std::vector<HighIds> ids;
+        for (std::size_t i = 0; i < meshes_.size(); ++i) {
+            if (!meshes_[i].empty()) ids.push_back({&meshes[i], std::move(meshes_[i])});
+        }
+        return ids;
+    }
+
+  private:
+    std::vector<std::vector<std::vector<NamedTriangles>>> parts_;  ///< By model and part.
+    std::vector<std::vector<NamedTriangles>> meshes_;
+};
+
 /// Takes the triangles of a piece out of its model; the model is not used afterwards.
 Mesh take_piece(std::vector<MapModel>& models, const HighPiece& piece) {
     Mesh& mesh = models[piece.model].parts[piece.part].mesh;
@@ -76,21 +133,28 @@ std::vector<std::size_t> add_high(const MeshBakeRequest& request, const MapModel
     ModelPairs paired = pair_models(named, {request.low, &low}, request.match);
     findings.add("", paired.report);
     models.unpaired = std::move(paired.unpaired);
+    IdNames names(request, high);
     std::vector<std::size_t> file_of;
     for (ModelPair& pair : paired.pairs) {
         BakePair range{pair.name, models.high.size(), pair.high.size(), 0, std::move(pair.low)};
         for (const HighPiece& piece : pair.high) {
             file_of.push_back(piece.model);
+            names.add_piece(piece);
             models.high.push_back(take_piece(high, piece));
             range.high_triangles += models.high.back().triangles.size();
         }
         models.pairs.push_back(std::move(range));
     }
-    if (!paired.pairs.empty()) return file_of;
+    if (!paired.pairs.empty()) {
+        models.ids = names.of_meshes(models.high);
+        return file_of;
+    }
     for (std::size_t i = 0; i < high.size(); ++i) {
         file_of.push_back(i);
+        names.add_joined(i, high[i].parts);
         models.high.push_back(join_parts(request.high[i], std::move(high[i])));
     }
+    models.ids = names.of_meshes(models.high);
     return file_of;
 }
 
@@ -109,6 +173,37 @@ void add_textures(const MeshBakeRequest& request, const std::vector<MapAppearanc
 }
 
 }  // namespace
+
+std::vector<NamedTriangles> id_names(const MapModelPart& part,
+                                     const std::vector<std::string>& materials,
+                                     const std::filesystem::path& file) {
+    const std::string stem = file.stem().string();
+    const auto object_of = [&](std::size_t triangle) -> const std::string& {
+        const std::size_t object = part.object_of.empty() ? 0 : part.object_of[triangle];
+        const bool has_name = object < part.objects.size() && !part.objects[object].empty();
+        return has_name ? part.objects[object] : stem;
+    };
+    const std::size_t count = part.mesh.triangles.size();
+    std::vector<MaterialRange> ranges = part.mesh.material_ranges;
+    if (ranges.empty()) ranges.push_back({0, static_cast<std::uint32_t>(count), std::nullopt});
+    const std::vector<NamedTriangles> by_material = names_by_material(part.mesh, materials);
+    std::vector<NamedTriangles> names;
+    for (const MaterialRange& range : ranges) {
+        const std::size_t end = std::size_t{range.first_triangle} + range.triangle_count;
+        for (std::size_t i = range.first_triangle; i < end; ++i) {
+            const bool is_first = i == range.first_triangle;
+            if (range.material && !is_first) break;
+            const std::string& name = range.material
+                                          ? std::ranges::find(by_material, range.first_triangle,
+                                                              &NamedTriangles::first_triangle)
+                                                ->name
+                                          : object_of(i);
+            if (names.empty() || names.back().name != name)
+                names.push_back({static_cast<std::uint32_t>(i), name});
+        }
+    }
+    return names;
+}
 
 ModelPairs pair_models(std::span<const NamedModel> high, const NamedModel& low,
                        PartMatching matching) {

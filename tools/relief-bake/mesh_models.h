@@ -88,6 +88,13 @@ class HighTextures {
     std::map<TextureSlot, std::size_t> textures_;  ///< The numbers of the others.
 };
 
+/// Returns the names of the triangles of a part for maps of ids: those of their materials, else of
+/// their objects, else of their file.
+/// \param materials  names, by index
+std::vector<NamedTriangles> id_names(const MapModelPart& part,
+                                     const std::vector<std::string>& materials,
+                                     const std::filesystem::path& file);
+
 /// The high meshes of a pair, which are adjacent in BakeModels::high.
 struct BakePair {
     std::string name;
@@ -106,6 +113,7 @@ struct BakeModels {
     glm::dvec3 origin{0.0};  ///< The world position of the origin.
     std::shared_ptr<const Mesh> cage;
     HighTextures textures;
+    std::vector<HighIds> ids;     ///< Of the high meshes; only if ids are baked.
     std::vector<BakePair> pairs;  ///< Empty: every low part sees all high parts.
     std::vector<std::string> unpaired;
     /// The files that were read, and the textures of the high models. Textures of the low model are

@@ -39,8 +39,10 @@ struct LayerOptions {
     std::map<LayerKind, std::filesystem::path> files;
     std::optional<int> bits;
     std::optional<double> height_range, curvature_range, position_range;
-    std::optional<int> occlusion_rays;
+    std::optional<int> occlusion_rays;  ///< Also of bent normals.
     std::optional<double> occlusion_distance;
+    std::optional<int> thickness_rays;
+    std::optional<double> thickness_distance;
 
     [[nodiscard]] bool has(LayerKind kind) const { return files.contains(kind); }
 };

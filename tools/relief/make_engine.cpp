@@ -157,7 +157,14 @@ std::vector<std::filesystem::path> write_map_files(Engine engine,
     const std::vector<make::AssetMap> maps = make::maps_of(asset);
     for (const make::AssetLayer& layer : asset.layers) {
         const auto map = std::ranges::find(maps, &layer.image, &make::AssetMap::image);
-        write(layer_file(engine, output, layer.coding.kind), layer.image, map->metadata);
+        const std::filesystem::path file = layer_file(engine, output, layer.coding.kind);
+        if (layer.coding.kind == LayerKind::bent_normal) {
+            LayerCoding coding = layer.coding;
+            coding.normal_format.green = rules.green;
+            write(file, normal_map_for(layer.image, rules.green), layer_metadata(coding));
+        } else {
+            write(file, layer.image, map->metadata);
+        }
     }
     return files;
 }

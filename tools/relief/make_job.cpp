@@ -21,6 +21,7 @@
 #include "make_remesh.h"
 #include "make_stages.h"
 #include "make_start.h"
+#include "mesh_maps.h"
 #include "relief/mesh/execution.h"
 
 namespace relief::tools {
@@ -70,7 +71,8 @@ std::string map_note(const make::Asset& asset, const make::AssetMap& map) {
     const auto range = map.metadata.find("relief:range");
     if (map.slots.empty() && range != map.metadata.end()) {
         const double limit = std::stod(range->second);
-        return fmt::format(", {:.4g} to {:.4g}", -limit, limit);
+        const bool is_signed = map.metadata.contains("relief:zero");
+        return fmt::format(", {:.4g} to {:.4g}", is_signed ? -limit : 0.0, limit);
     }
     return "";
 }
@@ -113,6 +115,11 @@ Json material_json(const GltfMaterial& material) {
             {"double_sided", material.double_sided}};
 }
 
+bool has_layer(const make::Asset& asset, LayerKind kind) {
+    return std::ranges::any_of(
+        asset.layers, [&](const make::AssetLayer& layer) { return layer.coding.kind == kind; });
+}
+
 std::vector<std::string> map_lines(const MadeAsset& made) {
     const make::Asset& asset = made.asset;
     const BakeResult& bake = asset.bake;
@@ -127,8 +134,22 @@ std::vector<std::string> map_lines(const MadeAsset& made) {
                                     map.image->height, map_note(asset, map)));
     }
     if (bake.occlusion_rays > 0) {
-        lines.push_back(fmt::format("{:.3g} million rays for occlusion",
-                                    static_cast<double>(bake.occlusion_rays) / 1e6));
+        const bool has_bent = has_layer(asset, LayerKind::bent_normal);
+        const bool has_occlusion = asset.occlusion_map || asset.surface_has_occlusion;
+        lines.push_back(fmt::format("{:.3g} million rays for {}",
+                                    static_cast<double>(bake.occlusion_rays) / 1e6,
+                                    !has_bent       ? "occlusion"
+                                    : has_occlusion ? "occlusion and bent normals"
+                                                    : "bent normals"));
+    }
+    if (bake.thickness_rays > 0) {
+        lines.push_back(fmt::format("{:.3g} million rays for thickness, of which {} hit nothing",
+                                    static_cast<double>(bake.thickness_rays) / 1e6,
+                                    bake.open_thickness_rays));
+    }
+    for (const make::AssetLayer& layer : asset.layers) {
+        if (layer.coding.kind == LayerKind::id)
+            lines.push_back("ids: " + id_text(layer.coding.ids));
     }
     const std::string factors = factors_text(asset);
     if (!factors.empty()) lines.push_back("without a map: " + factors);
@@ -144,6 +165,10 @@ Json maps_json(const make::Asset& asset) {
                      {"bits", map.image->bits()}};
         const auto range = map.metadata.find("relief:range");
         if (range != map.metadata.end()) json["range"] = std::stod(range->second);
+        const auto layer = std::ranges::find_if(asset.layers, [&](const make::AssetLayer& one) {
+            return &one.image == map.image && one.coding.kind == LayerKind::id;
+        });
+        if (layer != asset.layers.end()) json["ids"] = ids_json(layer->coding.ids);
         maps.push_back(std::move(json));
     }
     return {{"maps", maps},
@@ -152,6 +177,8 @@ Json maps_json(const make::Asset& asset) {
             {"texels_missed", asset.bake.texels_missed},
             {"rays", asset.bake.rays},
             {"occlusion_rays", asset.bake.occlusion_rays},
+            {"thickness_rays", asset.bake.thickness_rays},
+            {"open_thickness_rays", asset.bake.open_thickness_rays},
             {"min_height", asset.bake.min_height},
             {"max_height", asset.bake.max_height}};
 }

@@ -22,9 +22,10 @@ using Words = std::vector<std::string>;
 
 /// Parses "height,curvature".
 std::vector<LayerKind> parse_layers(const std::string& subject, const std::string& text) {
-    const Choices<LayerKind> choices = {{"height", LayerKind::height},
-                                        {"curvature", LayerKind::curvature},
-                                        {"position", LayerKind::position}};
+    const Choices<LayerKind> choices = {
+        {"height", LayerKind::height},       {"curvature", LayerKind::curvature},
+        {"position", LayerKind::position},   {"bent", LayerKind::bent_normal},
+        {"thickness", LayerKind::thickness}, {"ids", LayerKind::id}};
     std::vector<LayerKind> layers;
     std::istringstream names(text);
     for (std::string name; std::getline(names, name, ',');) {
@@ -364,8 +365,10 @@ std::vector<MakeOption> map_options() {
              return add_value(
                  app, option, "NAMES",
                  "Also write further layers, from the same rays, as PNG files of 16 bits beside "
-                 "the asset: height (of the model above the asset), curvature, position; several "
-                 "are separated by commas.",
+                 "the asset: height (of the model above the asset), curvature, position; ids (a "
+                 "flat color for each material, of 8 bits); bent (bent normals) and thickness, "
+                 "with a quarter of the size and the rays of the occlusion map (32 without one). "
+                 "Several are separated by commas.",
                  [&request](const std::string& subject, const std::string& text) {
                      request.asset.layers = parse_layers(subject, text);
                  });

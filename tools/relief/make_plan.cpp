@@ -26,6 +26,7 @@ struct EstimatedCosts {
     double prepare = 1.3;        ///< Of the bake, per million triangles of the source.
     double bake = 0.55;          ///< Per million rays.
     double occlusion = 0.43;     ///< Per million rays of occlusion.
+    double thickness = 1.2;      ///< Per million rays of thickness.
     double write = 0.015;        ///< Per million texels of a map.
 };
 
@@ -63,9 +64,24 @@ std::vector<std::string> layers_of(const make::AssetOptions& options,
     if (varying.surface) layers.emplace_back("roughness and metalness");
     if (varying.occlusion) layers.emplace_back("occlusion textures");
     if (varying.emission) layers.emplace_back("emission");
-    for (const LayerKind kind : options.layers)
-        layers.emplace_back(enum_name(kind));
+    for (const LayerKind kind : options.layers) {
+        if (kind != LayerKind::bent_normal && kind != LayerKind::thickness)
+            layers.emplace_back(enum_name(kind));
+    }
     return layers;
+}
+
+/// ", 2 million for occlusion and bent normals, 2 million for thickness"
+/// \param occlusion,thickness  millions of rays
+std::string hemisphere_text(bool has_occlusion, bool has_bent, double occlusion, double thickness) {
+    std::string text;
+    if (has_occlusion || has_bent) {
+        text +=
+            fmt::format(", {:.0f} million for {}{}{}", occlusion, has_occlusion ? "occlusion" : "",
+                        has_occlusion && has_bent ? " and " : "", has_bent ? "bent normals" : "");
+    }
+    if (thickness > 0.0) text += fmt::format(", {:.0f} million for thickness", thickness);
+    return text;
 }
 
 }  // namespace
@@ -77,8 +93,14 @@ std::vector<PlannedStage> plan_of(const MakeRequest& request, const make::AssetS
     const double result = std::min(static_cast<double>(options.triangles) / million, dense);
     const double texels = texels_of(options.size) / million;
     const double rays = covered * texels * options.samples;
-    const double occlusion =
-        options.occlusion ? covered * texels / 16.0 * options.occlusion_rays : 0.0;
+    const double hemispheres =
+        covered * texels / 16.0 * (options.occlusion_rays > 0 ? options.occlusion_rays : 32);
+    const auto has_layer = [&](LayerKind kind) {
+        return std::ranges::find(options.layers, kind) != options.layers.end();
+    };
+    const bool has_bent = has_layer(LayerKind::bent_normal);
+    const double occlusion = options.occlusion || has_bent ? hemispheres : 0.0;
+    const double thickness = has_layer(LayerKind::thickness) ? hemispheres : 0.0;
     const std::string edges = options.crease_angle
                                   ? fmt::format("hard at edges above {:g} degrees",
                                                 *options.crease_angle * 180.0 / std::numbers::pi)
@@ -104,12 +126,12 @@ std::vector<PlannedStage> plan_of(const MakeRequest& request, const make::AssetS
     if (options.remesh == make::Remeshing::automatic && !options.keep_texcoords)
         plan.push_back(remesh_plan(options, dense));
     plan.push_back({"frames", fmt::format("normals, {}; MikkTSpace tangents", edges), 0.0});
-    plan.push_back(
-        {"bake",
-         fmt::format(
-             "{:.1f} million rays for {}{}", rays, fmt::join(layers_of(options, source), ", "),
-             options.occlusion ? fmt::format(", {:.0f} million for occlusion", occlusion) : ""),
-         costs.prepare * dense + costs.bake * rays + costs.occlusion * occlusion});
+    plan.push_back({"bake",
+                    fmt::format("{:.1f} million rays for {}{}", rays,
+                                fmt::join(layers_of(options, source), ", "),
+                                hemisphere_text(options.occlusion, has_bent, occlusion, thickness)),
+                    costs.prepare * dense + costs.bake * rays + costs.occlusion * occlusion +
+                        costs.thickness * thickness});
     plan.push_back({"write",
                     fmt::format("the asset with its maps{}",
                                 options.levels > 0 ? fmt::format(" and {} of detail",

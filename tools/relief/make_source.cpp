@@ -307,6 +307,8 @@ make::AssetSource read_source(const DenseModel& model, SourceFacts& facts, Findi
         textures.add(models.files[i], source.mesh, models.appearances[i], {}, all, report);
         const std::vector<HighMaterial>& added = textures.materials().back().materials;
         source.materials.insert(source.materials.end(), added.begin(), added.end());
+        for (const GltfMaterial& material : models.appearances[i].materials)
+            source.material_names.push_back(material.name);
     }
     facts.textures = textures.description();
     const std::vector<UsedMaterial> used = used_materials(models, source);

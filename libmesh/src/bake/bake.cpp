@@ -79,8 +79,9 @@ glm::dvec3 inverse_heights(const Mesh& mesh, const glm::uvec3& corners) {
 LowSurface::LowSurface(const Mesh& low, const BakeOptions& options, Report& report) {
     validate(low);
     if (low.texcoords.empty()) throw InvalidInput("the low mesh has no texture coordinates");
-    const bool to_tangent = options.space == VectorSpace::tangent &&
-                            (options.map.layers.normals || options.map.sample_angle);
+    const bool to_tangent =
+        options.space == VectorSpace::tangent &&
+        (options.map.layers.normals || options.map.layers.bent_normals || options.map.sample_angle);
     FrameOptions frames;
     frames.tangents = !to_tangent            ? TangentMethod::none
                       : low.tangents.empty() ? TangentMethod::mikktspace
@@ -326,9 +327,10 @@ void check_map(const BakeMapOptions& map, const Mesh& low) {
 void check_layers(const BakeLayers& requested, const BakeLayers& prepared) {
     if ((requested.normals && !prepared.normals) || (requested.curvature && !prepared.curvature) ||
         (requested.colors && !prepared.colors) || (requested.opacity && !prepared.opacity) ||
-        (requested.surface && !prepared.surface) || (requested.emission && !prepared.emission))
+        (requested.surface && !prepared.surface) || (requested.emission && !prepared.emission) ||
+        (requested.bent_normals && !prepared.bent_normals) || (requested.ids && !prepared.ids))
         throw InvalidInput("a map requests a layer that its Baker does not have");
-    if (requested.occlusion) check(*requested.occlusion);
+    check(requested);
 }
 
 CoverageOptions coverage_options(const BakeMapOptions& map, int side) {
@@ -422,6 +424,7 @@ BakeParts::BakeParts(std::span<const Mesh> high, const LowSurface& low, const Ba
                      Report& report) {
     surfaces_.push_back(
         std::make_unique<SeenSurface>(high, low.mesh(), options, low.cage_reach(), "", report));
+    number_ids(options);
 }
 
 BakeParts::BakeParts(std::span<const BakePart> parts, const LowSurface& low,
@@ -433,7 +436,9 @@ BakeParts::BakeParts(std::span<const BakePart> parts, const LowSurface& low,
         surfaces_.push_back(
             std::make_unique<SeenSurface>(part.high, own, options, reach, part.name, report));
     }
-    if (!options.parts_occlude || !options.map.layers.occlusion) return;
+    number_ids(options);
+    const BakeLayers& layers = options.map.layers;
+    if (!options.parts_occlude || !(layers.occlusion || layers.bent_normals)) return;
     std::set<const Mesh*> known;
     std::vector<RayMesh> meshes;
     for (const BakePart& part : parts) {
@@ -442,6 +447,16 @@ BakeParts::BakeParts(std::span<const BakePart> parts, const LowSurface& low,
         }
     }
     occluders_ = std::make_unique<RayScene>(std::move(meshes));
+}
+
+void BakeParts::number_ids(const BakeOptions& options) {
+    if (!options.map.layers.ids) return;
+    std::vector<std::string> names;
+    for (const auto& surface : surfaces_)
+        surface->high.add_names(names);
+    ids_ = surface_ids(std::move(names));
+    for (const auto& surface : surfaces_)
+        surface->high.number_ids(ids_);
 }
 
 LayerBounds BakeParts::bounds(const BakeLayers& layers) const {
@@ -458,6 +473,10 @@ LayerBounds BakeParts::bounds(const BakeLayers& layers) const {
         }
         if (layers.emission)
             bounds.emission = std::max(bounds.emission, surface->high.largest_emission());
+        if (layers.thickness) {
+            bounds.thickness = std::max(bounds.thickness,
+                                        Thickness::limit(surface->high.scene(), *layers.thickness));
+        }
     }
     return bounds;
 }
@@ -537,6 +556,10 @@ const BakeAgreement& Baker::agreement() const {
     return implementation_->agreement;
 }
 
+const std::vector<SurfaceId>& Baker::ids() const {
+    return implementation_->parts.ids();
+}
+
 LayerBounds Baker::bounds(const BakeLayers& layers) const {
     LayerBounds bounds = implementation_->parts.bounds(layers);
     if (layers.heights) {
@@ -579,6 +602,8 @@ BakeResult Baker::bake(const BakeMapOptions& map,
     result.samples = counts.samples;
     result.rays = counts.rays;
     result.occlusion_rays = counts.occlusion_rays;
+    result.thickness_rays = counts.thickness_rays;
+    result.open_thickness_rays = counts.open_thickness_rays;
     result.texels_baked = counts.baked;
     result.texels_missed = counts.missed;
     result.first_missed = counts.first_missed;

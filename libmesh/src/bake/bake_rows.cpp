@@ -70,7 +70,7 @@ class Piece {
         const int samples = work.side * work.side;
         if (LayerBake::is_requested(work.map.layers)) {
             layers_.emplace(
-                work.map.layers, map_index(0), sums_.size(),
+                work, map_index(0), sums_.size(),
                 is_adaptive_bake() ? first_count() : static_cast<std::uint32_t>(samples));
         }
     }
@@ -185,10 +185,14 @@ class Piece {
         std::vector<LayerHit> hits;
         for (std::size_t i = 0; i < lines_.size(); ++i) {
             if (points_[i].hit.is_hit())
-                hits.push_back({points_[i].hit, samples_[i].texel, samples_[i].index});
+                hits.push_back(
+                    {points_[i].hit, samples_[i].owner, samples_[i].texel, samples_[i].index});
         }
-        counts_.occlusion_rays +=
+        const LayerRays rays =
             layers_->add(surface_->high, work_.parts.occluders(*surface_), hits, report_);
+        counts_.occlusion_rays += rays.occlusion;
+        counts_.thickness_rays += rays.thickness;
+        counts_.open_thickness_rays += rays.open_thickness;
     }
 
     void add_hit(const Sample& sample, const ProjectedPoint& point) {
@@ -203,25 +207,14 @@ class Piece {
     void add_normal(const Sample& sample, const ProjectedPoint& point, TexelSum& sum) {
         glm::dvec3 normal = surface_->high.normal(point.hit, map_index(sample.texel), report_);
         if (!point.hit.faces_origin) normal = -normal;
-        normal = in_output_space(normal, sample, sum);
+        const std::optional<glm::dvec3> in_map = in_output_space(work_, sample.owner, normal);
+        const bool is_tangent = work_.options.space == VectorSpace::tangent;
+        sum.lacks_frame |= !in_map;
+        sum.is_behind |= is_tangent && in_map && in_map->z < 0.0;
+        normal = in_map.value_or(glm::dvec3(0.0, 0.0, 1.0));
         if (sum.hits == 0) sum.first = normal;
         sum.min_cosine = std::min(sum.min_cosine, glm::dot(sum.first, normal));
         sum.normal += normal;
-    }
-
-    [[nodiscard]] glm::dvec3 in_output_space(const glm::dvec3& normal, const Sample& sample,
-                                             TexelSum& sum) const {
-        if (work_.options.space != VectorSpace::tangent)
-            return direction_or_zero(work_.options.output_from_mesh * normal);
-        const TexelFrame frame(work_.low.mesh(), sample.owner.triangle,
-                               glm::dvec3(sample.owner.weights()));
-        if (!frame.is_usable()) {
-            sum.lacks_frame = true;
-            return {0.0, 0.0, 1.0};
-        }
-        const glm::dvec3 result = direction_or_zero(frame.to_tangent(normal));
-        sum.is_behind |= result.z < 0.0;
-        return result;
     }
 
     /// Stores the means over the samples that hit.
@@ -247,7 +240,7 @@ class Piece {
         if (work_.map.layers.normals) store_normal(sum, at);
         if (work_.map.layers.heights)
             rows_.heights[at] = sum.hits > 0 ? static_cast<float>(sum.height / sum.hits) : 0.0F;
-        if (layers_) layers_->store(texel, rows_, at);
+        if (layers_) layers_->store(texel, rows_, at, report_);
     }
 
     /// Returns the owner of the first covered sample of a texel.
@@ -335,10 +328,21 @@ class Piece {
 
 }  // namespace
 
+std::optional<glm::dvec3> in_output_space(const BakeWork& work, const CoveredTexel& texel,
+                                          const glm::dvec3& direction) {
+    if (work.options.space != VectorSpace::tangent)
+        return direction_or_zero(work.options.output_from_mesh * direction);
+    const TexelFrame frame(work.low.mesh(), texel.triangle, glm::dvec3(texel.weights()));
+    if (!frame.is_usable()) return std::nullopt;
+    return direction_or_zero(frame.to_tangent(direction));
+}
+
 BakeCounts& BakeCounts::operator+=(const BakeCounts& other) {
     samples += other.samples;
     rays += other.rays;
     occlusion_rays += other.occlusion_rays;
+    thickness_rays += other.thickness_rays;
+    open_thickness_rays += other.open_thickness_rays;
     baked += other.baked;
     missed += other.missed;
     min_height = std::min(min_height, other.min_height);

@@ -105,11 +105,16 @@ class BakeParts {
     [[nodiscard]] BakeDistances largest_distances() const;
     /// Returns the comparison of the boxes around all parts.
     [[nodiscard]] BakeFit fit() const;
-    /// Returns the bounds of curvature and positions.
+    /// Returns the bounds of layers other than heights.
     [[nodiscard]] LayerBounds bounds(const BakeLayers& layers) const;
+    [[nodiscard]] const std::vector<SurfaceId>& ids() const { return ids_; }
 
   private:
+    /// Numbers the ids of all parts, if they are requested.
+    void number_ids(const BakeOptions& options);
+
     std::vector<std::unique_ptr<SeenSurface>> surfaces_;
+    std::vector<SurfaceId> ids_;
     std::vector<std::uint32_t> part_of_triangle_;  ///< Empty if there is only one part.
     std::unique_ptr<RayScene> occluders_;          ///< All meshes, with BakeOptions::parts_occlude.
 };
@@ -134,6 +139,12 @@ struct BakeWork {
     int side = 1;  ///< Samples along each side of a texel.
 };
 
+/// Returns a direction in the space of the map: unit, or zero if it has none. Absent where the low
+/// mesh has no tangent frame.
+/// \param texel  the point of the low mesh
+std::optional<glm::dvec3> in_output_space(const BakeWork& work, const CoveredTexel& texel,
+                                          const glm::dvec3& direction);
+
 /// Statistics of ray lengths that would hit: count, minimum, maximum, and a histogram.
 class RayLengths {
   public:
@@ -153,6 +164,8 @@ struct BakeCounts {
     std::size_t samples = 0;
     std::size_t rays = 0;
     std::size_t occlusion_rays = 0;
+    std::size_t thickness_rays = 0;
+    std::size_t open_thickness_rays = 0;
     std::size_t baked = 0;
     std::size_t missed = 0;
     double min_height = std::numeric_limits<double>::infinity();

@@ -26,13 +26,33 @@
 namespace relief::detail {
 namespace {
 
+/// Returns the value that most texels have; of equally frequent ones, the smallest.
+float most_frequent(std::span<const float> values, std::span<const std::size_t> from) {
+    float best = values[from.front()];
+    std::ptrdiff_t best_count = 0;
+    for (const std::size_t texel : from) {
+        const float value = values[texel];
+        const auto count =
+            std::ranges::count(from, value, [&](std::size_t other) { return values[other]; });
+        if (count > best_count || (count == best_count && value < best)) {
+            best = value;
+            best_count = count;
+        }
+    }
+    return best;
+}
+
 /// Averages texels of a layer. Directions that cancel give the first one.
 /// \param values  all channels of the layer, texel by texel
 /// \param from    the texels, at least one
 /// \param to      gets the mean; it may be part of `values`
 void average(const BakedLayer& layer, std::span<const float> values,
              std::span<const std::size_t> from, float* to) {
-    if (!layer.has_directions) {
+    if (layer.mean == TexelMean::majority) {
+        to[0] = most_frequent(values, from);
+        return;
+    }
+    if (layer.mean == TexelMean::number) {
         for (std::size_t channel = 0; channel < layer.channels; ++channel) {
             double sum = 0.0;
             for (const std::size_t texel : from)

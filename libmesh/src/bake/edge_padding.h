@@ -4,7 +4,8 @@
 /// filtering and mip levels do not mix in the background.
 ///
 /// A texel gets the mean of all baked texels that are nearest to it, by the Euclidean distance
-/// between centers: the mean direction for normals, the mean value for other layers. So each chart
+/// between centers: the mean direction for normals, the most frequent id, and the mean value for
+/// other layers. So each chart
 /// continues beyond its border in all directions alike, and a mip level that averages 2^k texels
 /// sees only chart values within 2^k texels of a chart. The time depends only on the size of the
 /// map, not on the padding distance. Tests: tests/mesh/bake/padding_test.cpp.

@@ -147,9 +147,29 @@ Wide interpolated(std::span<const Value> values, const glm::uvec3& corners, cons
     return sum;
 }
 
+/// Returns the names of the triangles of a mesh for the layer of ids.
+std::vector<NamedTriangles> names_of(const Mesh& mesh, const BakeOptions& options) {
+    const auto given = std::ranges::find(options.ids, &mesh, &HighIds::mesh);
+    if (given == options.ids.end()) return names_by_material(mesh, {}, mesh.name);
+    const std::vector<NamedTriangles>& names = given->triangles;
+    const auto is_before = [](const NamedTriangles& a, const NamedTriangles& b) {
+        return a.first_triangle >= b.first_triangle;
+    };
+    if (names.empty() || names.front().first_triangle != 0 ||
+        std::ranges::adjacent_find(names, is_before) != names.end()) {
+        throw InvalidInput(
+            "the names of a high mesh's triangles do not begin at triangle 0, or are not in "
+            "ascending order");
+    }
+    return names;
+}
+
 /// Returns the number of rays if charts cover the maps completely.
 double expected_rays(const BakeOptions& options) {
-    const int rays = options.map.layers.occlusion ? options.map.layers.occlusion->rays : 0;
+    const BakeLayers& layers = options.map.layers;
+    int rays = layers.thickness ? layers.thickness->rays : 0;
+    if (layers.occlusion || layers.bent_normals)
+        rays += (layers.occlusion ? layers.occlusion : layers.bent_normals)->rays;
     return static_cast<double>(options.map_count) * options.map.width * options.map.height *
            (options.map.samples + rays);
 }
@@ -299,6 +319,7 @@ std::vector<std::uint32_t> HighSurface::attributes(const MetTriangle& met) const
                          });
     if (range != mesh.material_ranges.begin())
         result.push_back(static_cast<std::uint32_t>(std::prev(range)->material.value_or(-1)));
+    if (!entry.ids.empty()) result.push_back(id_of(entry, met.triangle));
     return result;
 }
 
@@ -332,6 +353,7 @@ HighSurface::Entry HighSurface::entry(const Mesh& mesh, std::size_t index,
     }
     if (layers.curvature)
         result.curvature = mean_curvatures(result.mesh->positions, result.mesh->triangles, report);
+    if (layers.ids) result.names = names_of(mesh, options);
     return result;
 }
 
@@ -452,6 +474,32 @@ double HighSurface::opacity(const RayHit& hit) const {
         opacity *= alpha_at(*hit_material->color_texture, color_texcoord(hit));
     if (!hit_material->alpha_cutoff) return opacity;
     return opacity >= static_cast<double>(*hit_material->alpha_cutoff) ? 1.0 : 0.0;
+}
+
+void HighSurface::add_names(std::vector<std::string>& names) const {
+    for (const Entry& entry : entries_) {
+        for (const NamedTriangles& named : entry.names)
+            names.push_back(named.name);
+    }
+}
+
+void HighSurface::number_ids(const std::vector<SurfaceId>& ids) {
+    for (Entry& entry : entries_) {
+        for (const NamedTriangles& named : entry.names) {
+            const auto id = std::ranges::lower_bound(ids, named.name, {}, &SurfaceId::name);
+            entry.ids.push_back(static_cast<std::uint32_t>(id - ids.begin()));
+        }
+    }
+}
+
+std::uint32_t HighSurface::id_of(const Entry& entry, std::uint32_t triangle) const {
+    const auto next =
+        std::ranges::upper_bound(entry.names, triangle, {}, &NamedTriangles::first_triangle);
+    return entry.ids[static_cast<std::size_t>(next - entry.names.begin()) - 1];
+}
+
+std::uint32_t HighSurface::id(const RayHit& hit) const {
+    return id_of(entries_[hit.mesh], hit.triangle);
 }
 
 HighSurface::CurvatureRange HighSurface::curvature_range() const {

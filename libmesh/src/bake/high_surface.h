@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The high-poly meshes of a bake: a ray scene, and the attributes at a hit (normal, color,
-/// curvature, position, surface, emission). An attribute is prepared only if a layer needs it.
+/// curvature, position, surface, emission, id). An attribute is prepared only if a layer needs it.
 /// Tests: tests/mesh/bake/bake_test.cpp, high_materials_test.cpp.
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "bake/ray_scene.h"
@@ -67,6 +68,16 @@ class HighSurface {
     /// Returns the linear RGB emission, black without a material, if requested.
     [[nodiscard]] glm::dvec3 emission(const RayHit& hit) const;
 
+    /// Adds the names of the ids of all meshes, if ids are requested.
+    void add_names(std::vector<std::string>& names) const;
+
+    /// Sets the numbers of the ids, which are needed before id().
+    /// \param ids  sorted by name; all names are in it
+    void number_ids(const std::vector<SurfaceId>& ids);
+
+    /// Returns the number of the id.
+    [[nodiscard]] std::uint32_t id(const RayHit& hit) const;
+
     /// Bounds of the absolute curvature over all meshes, if requested.
     struct CurvatureRange {
         double usual = 0.0;  ///< Holds on 99% of the area.
@@ -89,9 +100,12 @@ class HighSurface {
         std::vector<glm::vec2>
             split_texcoords;           ///< Storage of `color_texcoords` if vertices were split.
         std::vector<float> curvature;  ///< By vertex.
+        std::vector<NamedTriangles> names;
+        std::vector<std::uint32_t> ids;  ///< By the indices of `names`.
     };
     [[nodiscard]] Entry entry(const Mesh& mesh, std::size_t index, const BakeOptions& options,
                               Report& report);
+    [[nodiscard]] std::uint32_t id_of(const Entry& entry, std::uint32_t triangle) const;
     [[nodiscard]] const HighMaterial* material(const RayHit& hit) const;
     [[nodiscard]] glm::dvec2 color_texcoord(const RayHit& hit) const;
     /// Returns the color of a texture at a hit; white without a texture or texture coordinates.

@@ -79,7 +79,7 @@ Sample encode_value(const LayerCoding& coding, float value, bool& is_outside) {
         constexpr double largest = std::numeric_limits<Sample>::max();
         double place = static_cast<double>(value);
         double min = 0.0;
-        if (coding.is_signed() || coding.kind == LayerKind::emission) place /= coding.range;
+        if (coding.has_range()) place /= coding.range;
         if (coding.is_signed()) min = -1.0;
         is_outside = is_outside || !(place >= min && place <= 1.0);
         // NaN becomes 0.
@@ -97,6 +97,53 @@ Sample encode_value(const LayerCoding& coding, float value, bool& is_outside) {
             place = static_cast<double>(srgb_from_linear(static_cast<float>(place)));
         return static_cast<Sample>(std::round(largest * place));
     }
+}
+
+/// Returns the colors of ids, as codes within [0, 1]; black without an id.
+std::vector<float> id_colors(std::span<const float> ids, const LayerCoding& coding) {
+    std::vector<float> colors;
+    colors.reserve(3 * ids.size());
+    for (const float id : ids) {
+        const glm::u8vec3 color =
+            id >= 0.0F ? coding.ids.at(static_cast<std::size_t>(id)).color : glm::u8vec3(0);
+        for (int channel = 0; channel < 3; ++channel)
+            colors.push_back(static_cast<float>(color[channel]) / 255.0F);
+    }
+    return colors;
+}
+
+/// Appends alpha to texels of a normal map.
+template <typename Sample>
+std::vector<std::byte> normal_codes(const Image& map, std::span<const TexelState> states,
+                                    bool has_alpha) {
+    const std::span<const Sample> codes = map.as<Sample>();
+    if (!has_alpha) {
+        const std::span<const std::byte> bytes = std::as_bytes(codes);
+        return {bytes.begin(), bytes.end()};
+    }
+    std::vector<Sample> all;
+    all.reserve(4 * states.size());
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        all.insert(all.end(), &codes[3 * i], &codes[3 * i] + 3);
+        const bool is_filled = states[i] == TexelState::baked || states[i] == TexelState::padded;
+        all.push_back(alpha_code<Sample>(is_filled ? 1.0F : 0.0F));
+    }
+    const std::span<const std::byte> bytes = std::as_bytes(std::span(all));
+    return {bytes.begin(), bytes.end()};
+}
+
+std::vector<std::byte> encode_bent_normals(std::span<const float> values,
+                                           std::span<const TexelState> states,
+                                           const LayerCoding& coding, bool has_alpha,
+                                           Report& report) {
+    NormalMapFormat format = coding.normal_format;
+    format.bits = coding.bits;
+    format.dither = Dither::none;  // Dithering depends on the place in the map.
+    const ImageView normals(values.data(), static_cast<int>(states.size()), 1, 3);
+    const Image map = encode_normal_map(normals, format, report);
+    if (coding.bits == 8) return normal_codes<std::uint8_t>(map, states, has_alpha);
+    if (coding.bits == 16) return normal_codes<std::uint16_t>(map, states, has_alpha);
+    return normal_codes<float>(map, states, has_alpha);
 }
 
 template <typename Sample>
@@ -148,6 +195,12 @@ MapKind kind_of(LayerKind kind) {
             return MapKind::packed;
         case LayerKind::emission:
             return MapKind::emission;
+        case LayerKind::bent_normal:
+            return MapKind::bent_normal;
+        case LayerKind::thickness:
+            return MapKind::thickness;
+        case LayerKind::id:
+            return MapKind::id;
         case LayerKind::color:
             break;
     }
@@ -170,6 +223,12 @@ std::span<const float> layer_values(LayerKind kind, const BakedRows& rows) {
             return rows.surface;
         case LayerKind::emission:
             return rows.emission;
+        case LayerKind::bent_normal:
+            return rows.bent_normals;
+        case LayerKind::thickness:
+            return rows.thickness;
+        case LayerKind::id:
+            return rows.ids;
         default:
             return rows.colors;
     }
@@ -185,10 +244,16 @@ std::map<std::string, std::string> layer_metadata(const LayerCoding& coding,
     MapDescription description{
         .kind = kind_of(coding.kind), .color_space = coding.color_space(), .alpha = alpha};
     if (coding.kind == LayerKind::surface) description.detail = "gltf";
+    if (coding.kind == LayerKind::bent_normal) {
+        description.detail = std::string(enum_name(coding.space)) + " space";
+        if (coding.space == VectorSpace::tangent) description.green = coding.normal_format.green;
+        description.flat = coding.normal_format.flat;
+    }
     std::map<std::string, std::string> metadata = write_description(description, coding.bits);
+    for (const SurfaceId& id : coding.ids)
+        metadata["relief:ids"] += fmt::format("{} {}\n", color_text(id), id.name);
     if (coding.bits == 32) return metadata;
-    if (coding.is_signed() || coding.kind == LayerKind::emission)
-        metadata["relief:range"] = fmt::format("{}", coding.range);
+    if (coding.has_range()) metadata["relief:range"] = fmt::format("{}", coding.range);
     if (coding.is_signed()) metadata["relief:zero"] = fmt::format("{}", coding.zero_code());
     return metadata;
 }
@@ -208,6 +273,14 @@ std::vector<std::byte> encode_layer(std::span<const float> values,
                                     std::span<const TexelState> states, const LayerCoding& coding,
                                     bool has_alpha, std::size_t first_texel, Report& report,
                                     std::span<const float> opacity) {
+    if (states.empty()) return {};
+    if (coding.kind == LayerKind::bent_normal)
+        return encode_bent_normals(values, states, coding, has_alpha, report);
+    std::vector<float> colors;
+    if (coding.kind == LayerKind::id) {
+        colors = id_colors(values, coding);
+        values = colors;
+    }
     if (coding.bits == 8) {
         return encode<std::uint8_t>(values, states, coding, has_alpha, first_texel, report,
                                     opacity);

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The layers of a bake: the list of all layers, ambient occlusion, and the texel means of the
-/// layers other than normals and heights. Tests: tests/mesh/bake/bake_layers_test.cpp.
+/// The layers of a bake: the list of all layers, the rays of occlusion and thickness, and the texel
+/// means of the layers other than normals and heights.
+/// Tests: tests/mesh/bake/bake_layers_test.cpp, bent_normals_test.cpp, bake_ids_test.cpp.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "bake/high_surface.h"
@@ -15,32 +18,55 @@
 
 namespace relief::detail {
 
+struct BakeWork;
+
+/// The mean of the values of several texels.
+enum class TexelMean {
+    number,     ///< Of each channel.
+    direction,  ///< Of unit vectors.
+    majority,   ///< The most frequent value; of equally frequent ones, the smallest.
+};
+
 /// A layer that rows of a bake may hold.
 struct BakedLayer {
     std::span<float> BakedRows::*values;
     std::size_t channels;
-    bool has_directions;  ///< Values are averaged as unit vectors.
+    TexelMean mean;
     bool (*is_requested)(const BakeLayers& layers);
 };
 
 /// All layers, in the order in which they are stored and padded.
 inline constexpr std::array baked_layers = {
-    BakedLayer{&BakedRows::normals, 3, true, [](const BakeLayers& l) { return l.normals; }},
-    BakedLayer{&BakedRows::heights, 1, false, [](const BakeLayers& l) { return l.heights; }},
-    BakedLayer{&BakedRows::occlusion, 1, false,
+    BakedLayer{&BakedRows::normals, 3, TexelMean::direction,
+               [](const BakeLayers& l) { return l.normals; }},
+    BakedLayer{&BakedRows::heights, 1, TexelMean::number,
+               [](const BakeLayers& l) { return l.heights; }},
+    BakedLayer{&BakedRows::occlusion, 1, TexelMean::number,
                [](const BakeLayers& l) { return l.occlusion.has_value(); }},
-    BakedLayer{&BakedRows::curvature, 1, false, [](const BakeLayers& l) { return l.curvature; }},
-    BakedLayer{&BakedRows::positions, 3, false, [](const BakeLayers& l) { return l.positions; }},
-    BakedLayer{&BakedRows::colors, 3, false, [](const BakeLayers& l) { return l.colors; }},
-    BakedLayer{&BakedRows::opacity, 1, false, [](const BakeLayers& l) { return l.opacity; }},
-    BakedLayer{&BakedRows::surface, 3, false, [](const BakeLayers& l) { return l.surface; }},
-    BakedLayer{&BakedRows::emission, 3, false, [](const BakeLayers& l) { return l.emission; }},
+    BakedLayer{&BakedRows::curvature, 1, TexelMean::number,
+               [](const BakeLayers& l) { return l.curvature; }},
+    BakedLayer{&BakedRows::positions, 3, TexelMean::number,
+               [](const BakeLayers& l) { return l.positions; }},
+    BakedLayer{&BakedRows::colors, 3, TexelMean::number,
+               [](const BakeLayers& l) { return l.colors; }},
+    BakedLayer{&BakedRows::opacity, 1, TexelMean::number,
+               [](const BakeLayers& l) { return l.opacity; }},
+    BakedLayer{&BakedRows::surface, 3, TexelMean::number,
+               [](const BakeLayers& l) { return l.surface; }},
+    BakedLayer{&BakedRows::emission, 3, TexelMean::number,
+               [](const BakeLayers& l) { return l.emission; }},
+    BakedLayer{&BakedRows::bent_normals, 3, TexelMean::direction,
+               [](const BakeLayers& l) { return l.bent_normals.has_value(); }},
+    BakedLayer{&BakedRows::thickness, 1, TexelMean::number,
+               [](const BakeLayers& l) { return l.thickness.has_value(); }},
+    BakedLayer{&BakedRows::ids, 1, TexelMean::majority, [](const BakeLayers& l) { return l.ids; }},
 };
 
-/// \throws InvalidInput if the number of rays or the distance is out of range
-void check(const OcclusionOptions& options);
+/// \throws InvalidInput if the number of rays or the distance of a layer is out of range, or if
+///         occlusion and bent normals differ in them
+void check(const BakeLayers& layers);
 
-/// A point for which occlusion is computed.
+/// A point from which rays of occlusion or thickness are cast.
 struct OcclusionPlace {
     glm::dvec3 position{0.0};
     glm::dvec3 normal{0.0};    ///< Unit, the axis of the hemisphere.
@@ -64,21 +90,82 @@ class Occlusion {
 
     /// \param report  counts points whose normal is nearly in or behind the plane of the triangle;
     ///                their rays are distributed around the face normal
+    /// \param bent    empty, or gets for each point the mean over all rays of the directions of
+    ///                those that hit nothing (0: all hit), relative to a mean of all rays along the
+    ///                normal: exactly along the normal if no ray hits
     /// \return for each point 0 (hidden) to 1 (open); rays below the triangle's plane do not count
     [[nodiscard]] std::vector<double> open_shares(const RayScene& scene,
                                                   std::span<const OcclusionPlace> points,
-                                                  Report& report) const;
+                                                  Report& report,
+                                                  std::span<glm::dvec3> bent = {}) const;
 
   private:
     std::optional<double> distance_;
     std::uint32_t rays_;
 };
 
+/// The rays of a point behind the surface.
+struct PointThickness {
+    double distance = 0.0;   ///< The sum over the rays; a ray that hits nothing has its length.
+    std::uint32_t rays = 0;  ///< Without those above the plane of the triangle.
+    std::uint32_t hits = 0;
+};
+
+/// Thickness: the distances of rays into the surface, distributed as those of Occlusion about the
+/// reversed normal.
+class Thickness {
+  public:
+    Thickness(const ThicknessOptions& options, std::uint32_t samples);
+
+    [[nodiscard]] std::uint32_t rays_of_sample() const { return rays_; }
+
+    /// Returns the length of the rays.
+    static double limit(const RayScene& scene, const ThicknessOptions& options);
+
+    /// \param report  as Occlusion::open_shares()
+    [[nodiscard]] std::vector<PointThickness> measure(const RayScene& scene,
+                                                      std::span<const OcclusionPlace> points,
+                                                      Report& report) const;
+
+  private:
+    std::optional<double> distance_;
+    std::uint32_t rays_;
+};
+
+/// The ids of the samples of some texels.
+class TexelIds {
+  public:
+    explicit TexelIds(std::size_t texels) : first_(texels) {}
+
+    void add(std::size_t texel, std::uint32_t id);
+
+    /// Returns the id that most samples have; of equally frequent ones, the smallest. None if the
+    /// texel has no sample.
+    [[nodiscard]] std::optional<std::uint32_t> most_frequent(std::size_t texel) const;
+
+  private:
+    struct Votes {
+        std::uint32_t id = 0;
+        std::uint32_t count = 0;
+    };
+    std::vector<Votes> first_;  ///< The id of the first sample, by texel.
+    /// The numbers of samples with other ids, by texel and id. Few texels have any.
+    std::map<std::pair<std::size_t, std::uint32_t>, std::uint32_t> others_;
+};
+
 /// The hit of a sample.
 struct LayerHit {
     RayHit hit;
+    CoveredTexel owner;        ///< The point of the low mesh.
     std::size_t texel = 0;     ///< Index in the LayerBake.
     std::uint32_t sample = 0;  ///< Index in the texel.
+};
+
+/// Numbers of rays.
+struct LayerRays {
+    std::size_t occlusion = 0;
+    std::size_t thickness = 0;
+    std::size_t open_thickness = 0;  ///< Those that hit nothing.
 };
 
 /// Sums all layers but normals and heights over the samples of some texels.
@@ -87,32 +174,53 @@ class LayerBake {
     /// Returns whether any of these layers is requested.
     static bool is_requested(const BakeLayers& layers) {
         return layers.occlusion || layers.curvature || layers.positions || layers.colors ||
-               layers.opacity || layers.surface || layers.emission;
+               layers.opacity || layers.surface || layers.emission || layers.bent_normals ||
+               layers.thickness || layers.ids;
     }
 
     /// \param first_texel  the map index of the first texel
     /// \param texels       the number of texels
     /// \param min_samples  the minimum number of samples of a texel
-    LayerBake(const BakeLayers& layers, std::size_t first_texel, std::size_t texels,
+    LayerBake(const BakeWork& work, std::size_t first_texel, std::size_t texels,
               std::uint32_t min_samples);
 
-    /// Adds hits. \param occluders  what blocks the rays of occlusion
-    /// \return the number of occlusion rays
-    std::size_t add(const HighSurface& high, const RayScene& occluders,
-                    std::span<const LayerHit> hits, Report& report);
+    /// Adds hits. \param occluders  what blocks the rays of occlusion and bent normals
+    /// \return the numbers of rays
+    LayerRays add(const HighSurface& high, const RayScene& occluders,
+                  std::span<const LayerHit> hits, Report& report);
 
     /// Writes the means of a texel to index `at` of the rows.
-    void store(std::size_t texel, const BakedRows& rows, std::size_t at) const;
+    void store(std::size_t texel, const BakedRows& rows, std::size_t at, Report& report) const;
 
   private:
-    std::size_t add_occlusion(const HighSurface& high, const RayScene& occluders,
-                              std::span<const LayerHit> hits, Report& report);
+    /// The sums of a texel's bent normal, in the space of the map.
+    struct BentSum {
+        glm::dvec3 direction{0.0};
+        glm::dvec3 normal{0.0};
+        bool lacks_frame = false;  ///< True if it holds for any sample.
+    };
 
+    std::vector<OcclusionPlace> points_of(const HighSurface& high, std::span<const LayerHit> hits,
+                                          Report& report) const;
+    std::size_t add_occlusion(const RayScene& scene, std::span<const LayerHit> hits,
+                              std::span<const OcclusionPlace> points, Report& report);
+    void add_bent(const LayerHit& here, const glm::dvec3& normal, const glm::dvec3& direction);
+    std::size_t add_thickness(const RayScene& scene, std::span<const LayerHit> hits,
+                              std::span<const OcclusionPlace> points, Report& report);
+    void store_bent(std::size_t texel, const BakedRows& rows, std::size_t at, Report& report) const;
+
+    const BakeWork& work_;
     const BakeLayers& layers_;
     std::size_t first_texel_;
     std::optional<Occlusion> occlusion_;
+    std::optional<Thickness> thickness_;
+    std::optional<TexelIds> ids_;
     std::vector<std::uint32_t> hits_;
-    std::vector<double> open_, curvature_, opacity_;
+    std::vector<double> open_, curvature_, opacity_, distances_;
+    float max_thickness_ =
+        0.0F;  ///< The largest float that does not exceed LayerBounds::thickness.
+    std::vector<bool> has_surface_behind_;
+    std::vector<BentSum> bent_;
     std::vector<glm::dvec3> positions_, colors_, surfaces_, emission_;
 };
 

@@ -24,6 +24,9 @@ constexpr std::array all_kinds = {
     MapKindInfo{MapKind::error, "errors of normals", "a map of errors"},
     MapKindInfo{MapKind::metalness, "metalness", "a map of metalness"},
     MapKindInfo{MapKind::emission, "emission", "a map of emission"},
+    MapKindInfo{MapKind::bent_normal, "bent normals", "a map of bent normals"},
+    MapKindInfo{MapKind::thickness, "thickness", "a map of thickness"},
+    MapKindInfo{MapKind::id, "ids", "a map of ids"},
 };
 
 static_assert([] {

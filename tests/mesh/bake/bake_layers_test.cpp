@@ -37,6 +37,9 @@ BakeOptions all_layers(int width, int height) {
     options.map.layers.positions = true;
     options.map.layers.colors = true;
     options.map.layers.opacity = true;
+    options.map.layers.bent_normals = options.map.layers.occlusion;
+    options.map.layers.thickness = ThicknessOptions{.rays = 8, .distance = {}};
+    options.map.layers.ids = true;
     return options;
 }
 
@@ -74,9 +77,11 @@ TEST(BakeLayers, HaveNoSayInEachOther) {
         EXPECT_EQ(normals.states, all.states);
         EXPECT_TRUE(normals.heights.empty() && normals.occlusion.empty());
         EXPECT_TRUE(normals.curvature.empty() && normals.positions.empty());
-        EXPECT_TRUE(normals.colors.empty());
+        EXPECT_TRUE(normals.colors.empty() && normals.bent_normals.empty());
+        EXPECT_TRUE(normals.thickness.empty() && normals.ids.empty());
         EXPECT_EQ(normals.result.rays, all.result.rays);
         EXPECT_EQ(normals.result.occlusion_rays, 0U);
+        EXPECT_EQ(normals.result.thickness_rays, 0U);
         const BakedImage heights = only([](BakeLayers& layers) { layers.heights = true; });
         EXPECT_EQ(heights.heights, all.heights);
         EXPECT_TRUE(heights.normals.empty());
@@ -90,6 +95,15 @@ TEST(BakeLayers, HaveNoSayInEachOther) {
                   all.positions);
         EXPECT_EQ(only([](BakeLayers& layers) { layers.colors = true; }).colors, all.colors);
         EXPECT_EQ(only([](BakeLayers& layers) { layers.opacity = true; }).opacity, all.opacity);
+        EXPECT_EQ(only([](BakeLayers& layers) {
+                      layers.bent_normals = {8, {}};
+                  }).bent_normals,
+                  all.bent_normals);
+        EXPECT_EQ(only([](BakeLayers& layers) {
+                      layers.thickness = {8, {}};
+                  }).thickness,
+                  all.thickness);
+        EXPECT_EQ(only([](BakeLayers& layers) { layers.ids = true; }).ids, all.ids);
         set_thread_limit(1);
         const BakedImage alone = with(all_layers(70, 50));
         set_thread_limit(0);
@@ -97,6 +111,9 @@ TEST(BakeLayers, HaveNoSayInEachOther) {
         EXPECT_EQ(alone.curvature, all.curvature);
         EXPECT_EQ(alone.positions, all.positions);
         EXPECT_EQ(alone.colors, all.colors);
+        EXPECT_EQ(alone.bent_normals, all.bent_normals);
+        EXPECT_EQ(alone.thickness, all.thickness);
+        EXPECT_EQ(alone.ids, all.ids);
     }
 }
 
@@ -200,6 +217,17 @@ TEST(BakeLayers, RefusesInvalidOptions) {
     options.map.layers.occlusion = OcclusionOptions{.rays = 4, .distance = -1.0};
     EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),
               "the distance of occlusion is -1, but must be finite and at least 0");
+    options.map.layers.occlusion.reset();
+    options.map.layers.bent_normals = OcclusionOptions{.rays = 65537, .distance = {}};
+    EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),
+              "the number of bent normal rays is 65537, but must be within [1, 65536]");
+    options.map.layers.bent_normals = OcclusionOptions{.rays = 8, .distance = {}};
+    options.map.layers.occlusion = OcclusionOptions{.rays = 4, .distance = {}};
+    EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),
+              "occlusion and bent normals have different rays, which they share");
+    options.map.layers = {.thickness = ThicknessOptions{.rays = 4, .distance = -2.0}};
+    EXPECT_EQ(test::message_of<InvalidInput>([&] { bake({make_quad()}, make_quad(), options); }),
+              "the distance of thickness is -2, but must be finite and at least 0");
 }
 
 TEST(BakeLayers, OfAMapMustBeThoseOfItsBaker) {
@@ -219,12 +247,18 @@ TEST(BakeLayers, OfAMapMustBeThoseOfItsBaker) {
         },
         report);
     EXPECT_EQ(rows, 1U);
-    map.layers.curvature = true;
-    EXPECT_EQ(test::message_of<InvalidInput>([&] {
-                  baker.bake(
-                      map, [](const auto&) {}, report);
-              }),
-              "a map requests a layer that its Baker does not have");
+    const BakeMapOptions prepared = map;
+    for (const auto& add : {+[](BakeLayers& layers) { layers.curvature = true; },
+                            +[](BakeLayers& layers) { layers.bent_normals.emplace(); },
+                            +[](BakeLayers& layers) { layers.ids = true; }}) {
+        map = prepared;
+        add(map.layers);
+        EXPECT_EQ(test::message_of<InvalidInput>([&] {
+                      baker.bake(
+                          map, [](const auto&) {}, report);
+                  }),
+                  "a map requests a layer that its Baker does not have");
+    }
 }
 
 RayMesh ray_mesh(const Mesh& mesh) {

@@ -13,13 +13,16 @@ namespace relief::test {
 
 struct BakedImage {
     std::vector<float> normals, heights, occlusion, curvature, positions, colors, opacity, surface,
-        emission;
+        emission, bent_normals, thickness, ids;
     std::vector<TexelState> states;
     BakeResult result;
     Report report;
 
     [[nodiscard]] glm::dvec3 normal(std::size_t texel) const {
         return {normals[3 * texel], normals[3 * texel + 1], normals[3 * texel + 2]};
+    }
+    [[nodiscard]] glm::dvec3 bent_normal(std::size_t texel) const {
+        return {bent_normals[3 * texel], bent_normals[3 * texel + 1], bent_normals[3 * texel + 2]};
     }
     [[nodiscard]] std::size_t count(TexelState state) const {
         return static_cast<std::size_t>(std::count(states.begin(), states.end(), state));
@@ -39,6 +42,9 @@ inline void append(BakedImage& image, const BakedRows& rows) {
     add(image.opacity, rows.opacity);
     add(image.surface, rows.surface);
     add(image.emission, rows.emission);
+    add(image.bent_normals, rows.bent_normals);
+    add(image.thickness, rows.thickness);
+    add(image.ids, rows.ids);
     add(image.states, rows.states);
 }
 

@@ -50,6 +50,8 @@ struct AssetSource {
     std::vector<HighMaterial> materials;
     /// The material of triangles without a material.
     std::optional<HighMaterial> otherwise;
+    /// The names of `materials` for LayerKind::id (names_by_material()); may be shorter.
+    std::vector<std::string> material_names;
     /// The properties that all materials share, and that the asset gets: the alpha mode, the sides,
     /// and the factors that HighMaterial does not have (clearcoat, index of refraction, ...).
     GltfMaterial shared;
@@ -93,13 +95,15 @@ struct AssetOptions {
     std::optional<double> crease_angle = 1.0471975511965976;  // 60 degrees
     /// Keeps the texture coordinates of the source instead of computing new ones.
     bool keep_texcoords = false;
-    bool occlusion = true;    ///< Bakes an occlusion map of a quarter of the size.
-    int occlusion_rays = 32;  ///< Per texel of the occlusion map.
-    int samples = 1;          ///< Per texel (BakeMapOptions::samples).
+    bool occlusion = true;  ///< Bakes an occlusion map of a quarter of the size.
+    /// Per texel of the occlusion map, and of bent normals and thickness (0: 32 of these).
+    int occlusion_rays = 32;
+    int samples = 1;  ///< Per texel (BakeMapOptions::samples).
     /// Which parts of the source the rays of a part of the asset can hit (PartDecision). `name` is
     /// an error, and `automatic` means `all`, if a part of AssetStart has no counterpart.
     PartMatching match = PartMatching::automatic;
-    /// Further layers, of 16 bits: height, curvature and position.
+    /// Further layers: height, curvature and position of 16 bits, ids of 8; bent normals and
+    /// thickness of 16 bits with a quarter of the size, like occlusion.
     std::vector<LayerKind> layers;
     int normal_bits = 8;  ///< Of the normal map: 8 or 16.
     /// Also returns the normals before they are coded (Asset::baked_normals).
@@ -228,8 +232,9 @@ VaryingProperties varying_properties(const Mesh& mesh, const AssetSource& source
 /// - *unwrap* divides at hard edges and packs the charts into the map (unwrap.h).
 /// - *frames* computes normals, hard at the crease angle, and MikkTSpace tangents (frames.h).
 /// - *bake* casts rays onto the source (bake.h). One pass gives normals, colors with opacity,
-///   roughness, metalness, emission and further layers; occlusion has a quarter of their size. The
-///   rays of a named part hit only this part of the source (PartDecision).
+///   roughness, metalness, emission and further layers; occlusion, bent normals and thickness have
+///   a quarter of their size. Bent normals have the rays of occlusion. The rays of a named part hit
+///   only this part of the source (PartDecision).
 ///   Occlusion textures of the source are combined with it: the darker one counts.
 ///
 /// \return the same bytes for any number of threads

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Bakes maps for a low-poly mesh from high-poly meshes: normals, and optionally heights,
-/// occlusion, curvature, positions, colors, surfaces and emission. Part of the library
-/// relief::bake.
-/// Tests: tests/mesh/bake/bake_layers_test.cpp, tests/mesh/bake/high_materials_test.cpp,
-/// tests/mesh/bake/bake_test.cpp, baker_test.cpp, bake_layers_test.cpp.
+/// occlusion, bent normals, thickness, curvature, positions, ids, colors, surfaces and emission.
+/// Part of the library relief::bake.
+/// Tests: tests/mesh/bake/bake_layers_test.cpp, bent_normals_test.cpp, bake_ids_test.cpp,
+/// tests/mesh/bake/high_materials_test.cpp, tests/mesh/bake/bake_test.cpp, baker_test.cpp.
 #pragma once
 
 #include <array>
@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/bake_ids.h"
 #include "relief/mesh/enum_names.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/gltf_document.h"
@@ -34,9 +35,9 @@
 
 namespace RELIEF_API relief {
 
-// Options of the layers that a bake computes from the same rays: normals, heights, occlusion,
-// curvature, positions, colors, surfaces and emission. A layer that is not requested costs no time
-// and no memory, and layers do not affect each other.
+// Options of the layers that a bake computes from the same rays: normals, heights, occlusion, bent
+// normals, thickness, curvature, positions, ids, colors, surfaces and emission. A layer that is not
+// requested costs no time and no memory, and layers do not affect each other.
 
 /// Options of ambient occlusion: the fraction of rays from a point that hit nothing. Rays are
 /// cosine-distributed about the normal, like light from a uniform sky.
@@ -46,6 +47,18 @@ struct OcclusionOptions {
     int rays = 64;
     /// The length of the rays in the unit of the meshes. If absent, half of the longest side of the
     /// high meshes' bounding box.
+    std::optional<double> distance{};
+
+    friend bool operator==(const OcclusionOptions&, const OcclusionOptions&) = default;
+};
+
+/// Options of thickness: the mean distance to the surface behind a point. Rays are
+/// cosine-distributed about the reversed normal.
+struct ThicknessOptions {
+    /// Rays per texel, 1 to 65536, divided evenly among its samples.
+    int rays = 64;
+    /// The length of the rays in the unit of the meshes, which is also the thickness of a ray that
+    /// hits nothing. If absent, the longest side of the high meshes' bounding box.
     std::optional<double> distance{};
 };
 
@@ -88,6 +101,17 @@ struct BakeLayers {
     bool surface = false;
     bool emission = false;               ///< Linear RGB: the material's emission times its texture.
     glm::dmat4 position_from_mesh{1.0};  ///< For `positions`.
+    /// The mean direction of the occlusion rays that hit nothing, in BakeOptions::space. The mean
+    /// over all rays is taken as the normal, so that an open surface has exactly its interpolated
+    /// normal. Where no ray is open it is that normal, which is reported. If `occlusion` is also
+    /// requested, both have the same options and share their rays.
+    std::optional<OcclusionOptions> bent_normals{};
+    /// The distance to the nearest high surface behind, front or back. Rays that hit nothing count
+    /// with their length, as on an open surface; texels with no other rays are reported.
+    std::optional<ThicknessOptions> thickness{};
+    /// The index in Baker::ids() that most samples of a texel have; of equally frequent ones, the
+    /// first. Ids are never averaged, nor in the padding.
+    bool ids = false;
 };
 
 /// Upper bounds of the absolute values of layers, for integer storage.
@@ -97,6 +121,7 @@ struct LayerBounds {
     double curvature_p99 = 0.0;  ///< Over 99% of their area.
     double position = 0.0;       ///< Over all coordinates, transformed by `position_from_mesh`.
     double emission = 0.0;       ///< Over all materials and the texels of their textures.
+    double thickness = 0.0;      ///< The length of its rays.
 };
 
 /// An image on a mesh. It is sampled at full resolution, bilinearly or nearest, as `filter` says; a
@@ -251,6 +276,9 @@ struct BakeOptions {
     glm::dmat3 output_from_mesh{1.0};
     /// The materials of high meshes, for those that have them.
     std::vector<HighMaterials> materials;
+    /// The names of triangles for BakeLayers::ids. High meshes that are not in it have those of
+    /// names_by_material() without names, with Mesh::name for triangles without a material.
+    std::vector<HighIds> ids{};
 };
 
 /// The origin of a texel's value.
@@ -279,9 +307,24 @@ struct BakedRows {
     /// Three per texel. Roughness is 0 in texels that are neither baked nor padded.
     std::span<float> surface{};
     std::span<float> emission{};  ///< Three per texel.
+    /// Three per texel, unit; (0, 0, 1) in texels that are neither baked nor padded.
+    std::span<float> bent_normals{};
+    std::span<float> thickness{};  ///< In the unit of the meshes.
+    std::span<float> ids{};        ///< Indices in Baker::ids(); -1 in such texels.
 };
 
-enum class LayerKind { height, occlusion, curvature, position, color, surface, emission };
+enum class LayerKind {
+    height,
+    occlusion,
+    curvature,
+    position,
+    color,
+    surface,
+    emission,
+    bent_normal,
+    thickness,
+    id
+};
 
 /// The "relief:content" of files.
 template <>
@@ -292,30 +335,45 @@ inline constexpr auto enum_names<LayerKind> =
                                         {"positions", LayerKind::position},
                                         {"colors", LayerKind::color},
                                         {"surface", LayerKind::surface},
-                                        {"emission", LayerKind::emission}});
+                                        {"emission", LayerKind::emission},
+                                        {"bent normals", LayerKind::bent_normal},
+                                        {"thickness", LayerKind::thickness},
+                                        {"ids", LayerKind::id}});
 
 /// The values of a layer.
 std::span<const float> layer_values(LayerKind kind, const BakedRows& rows);
 
 /// The encoding of a layer. Floats store values as they are, colors linearly. With 8 and 16 bits,
 /// occlusion and surfaces are code / 255 or code / 65535, colors are sRGB, and emission is range
-/// times sRGB; signed layers are range * (code - 128) / 127 or range * (code - 32768) / 32767, so
-/// that 0 is exact.
+/// times sRGB; thickness is range * code / 255 or range * code / 65535; signed layers are range *
+/// (code - 128) / 127 or range * (code - 32768) / 32767, so that 0 is exact. Bent normals are coded
+/// as normal maps, also in floats. Ids are stored as their colors, which are data; texels without
+/// an id are black.
 struct LayerCoding {
     LayerKind kind = LayerKind::height;
     int bits = 16;
-    double range = 1.0;  ///< Of signed layers and emission in 8 and 16 bits.
+    double range = 1.0;  ///< Of signed layers, thickness and emission in 8 and 16 bits.
+    NormalMapFormat normal_format{};           ///< Of bent normals; its bits are ignored.
+    VectorSpace space = VectorSpace::tangent;  ///< Of bent normals.
+    std::vector<SurfaceId> ids{};              ///< Of ids: Baker::ids().
 
     [[nodiscard]] bool is_signed() const {
         return kind == LayerKind::height || kind == LayerKind::curvature ||
                kind == LayerKind::position;
     }
-    [[nodiscard]] std::size_t channels() const {
-        return kind == LayerKind::position || kind == LayerKind::color ||
-                       kind == LayerKind::surface || kind == LayerKind::emission
-                   ? 3
-                   : 1;
+    /// Returns whether values are multiplied by `range` in 8 and 16 bits.
+    [[nodiscard]] bool has_range() const {
+        return is_signed() || kind == LayerKind::emission || kind == LayerKind::thickness;
     }
+    /// The channels of the image.
+    [[nodiscard]] std::size_t channels() const {
+        return kind == LayerKind::height || kind == LayerKind::occlusion ||
+                       kind == LayerKind::curvature || kind == LayerKind::thickness
+                   ? 1
+                   : 3;
+    }
+    /// The number of values per texel.
+    [[nodiscard]] std::size_t values() const { return kind == LayerKind::id ? 1 : channels(); }
     [[nodiscard]] ColorSpace color_space() const;
 
     /// The code of zero in signed layers: 128 or 32768.
@@ -338,8 +396,9 @@ std::vector<std::byte> encode_layer(std::span<const float> values,
                                     std::span<const float> opacity = {});
 
 /// Returns the text entries of a layer's file: those of write_description() (map_description.h),
-/// and for signed layers in 8 and 16 bits "relief:range" and "relief:zero"; for emission
-/// "relief:range". \param alpha  the content of the alpha channel; absent: there is none
+/// and for signed layers in 8 and 16 bits "relief:range" and "relief:zero"; for emission and
+/// thickness "relief:range"; for ids "relief:ids", with a line "#a0b1c2 name" for each. \param
+/// alpha  the content of the alpha channel; absent: there is none
 std::map<std::string, std::string> layer_metadata(const LayerCoding& coding,
                                                   std::optional<AlphaContent> alpha = {});
 
@@ -369,8 +428,10 @@ struct BakeResult {
     std::size_t texels_missed = 0;
     std::size_t samples = 0;  ///< Number of points for which rays were cast.
     std::size_t rays = 0;
-    std::size_t occlusion_rays = 0;  ///< Not included in `rays`.
-    BakeDistances distances;         ///< Baker::distances().
+    std::size_t occlusion_rays = 0;       ///< Also of bent normals. Not included in `rays`.
+    std::size_t thickness_rays = 0;       ///< Not included in `rays`.
+    std::size_t open_thickness_rays = 0;  ///< Those of `thickness_rays` that hit nothing.
+    BakeDistances distances;              ///< Baker::distances().
     /// Minimum and maximum height of the high surface above the low mesh, over all samples that
     /// hit; 0 if none did.
     double min_height = 0.0;
@@ -537,6 +598,9 @@ class Baker {
     /// of the half diagonal).
     [[nodiscard]] const BakeAgreement& agreement() const;
 
+    /// The ids of all high meshes, sorted by name; empty without BakeLayers::ids.
+    [[nodiscard]] const std::vector<SurfaceId>& ids() const;
+
     /// Upper bounds of the values of the requested layers; 0 for the others.
     [[nodiscard]] LayerBounds bounds(const BakeLayers& layers) const;
 
@@ -547,7 +611,9 @@ class Baker {
     /// \param report  counts a whole map without a covered texel; texels that are missed, have no
     ///         frame, face away from the baked surface, or are covered by several triangles;
     ///         triangles that cover no texel; rays without a direction, which use the face normal;
-    ///         and high vertices without a normal, which use the face normal
+    ///         high vertices without a normal, which use the face normal; texels without an open
+    ///         ray, or with a bent normal behind the low surface; and texels without a surface
+    ///         behind them
     /// \param execution  threads, progress and cancellation; the map does not depend on it
     /// \throws InvalidInput if a size or an option is out of range, or a triangle does not exist;
     ///         Cancelled

@@ -34,6 +34,9 @@ enum class MapKind {
     error,   ///< The errors of another map.
     metalness,
     emission,
+    bent_normal,  ///< The mean unoccluded directions.
+    thickness,
+    id,  ///< Flat colors of materials or parts.
 };
 
 template <>
@@ -51,7 +54,10 @@ inline constexpr auto enum_names<MapKind> =
                                       {"packed", MapKind::packed},
                                       {"error", MapKind::error},
                                       {"metalness", MapKind::metalness},
-                                      {"emission", MapKind::emission}});
+                                      {"emission", MapKind::emission},
+                                      {"bent-normal", MapKind::bent_normal},
+                                      {"thickness", MapKind::thickness},
+                                      {"id", MapKind::id}});
 
 /// The texts for a kind.
 struct MapKindInfo {
@@ -81,7 +87,8 @@ inline constexpr auto enum_names<AlphaContent> =
 /// The metadata of a map. An absent entry is not stated.
 struct MapDescription {
     std::optional<MapKind> kind{};
-    /// After a comma in the entry of the kind: the engine of a packed map.
+    /// After a comma in the entry of the kind: the engine of a packed map, the space of bent
+    /// normals.
     std::string detail{};
     std::optional<Green> green{};    ///< Of normals in tangent space, and of slopes.
     std::optional<FlatCode> flat{};  ///< The code of zero of normals. None for float samples.
