@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unwrapping. A checker of its own decides by pairs of triangles, in integers, that nothing
-// overlaps; every mesh has a result; the order of triangles, vertices and corners changes no bit.
+// Unwrapping: charts, their borders, stretch and density, padding, tiles, and options. Hard input
+// is in unwrap_hard_cases_test.cpp.
 #include "relief/mesh/unwrap.h"
 
 #include <gtest/gtest.h>
@@ -16,9 +16,7 @@
 #include <vector>
 
 #include "atlas/charts.h"
-#include "hard_cases/mesh_changes.h"
-#include "hard_cases/random_meshes.h"
-#include "support/hard_meshes.h"
+#include "mesh/atlas/unwrap_promises.h"
 #include "support/invariants.h"
 #include "support/labels.h"
 #include "support/sanitized.h"
@@ -27,97 +25,9 @@
 namespace relief {
 namespace {
 
-using test::Dice;
+using test::broken_promise;
 using test::mesh_from;
-using test::MeshVariant;
 using test::message_of;
-
-struct Point {
-    std::int64_t x, y;
-    friend bool operator==(const Point&, const Point&) = default;
-};
-using Corners = std::array<Point, 3>;
-
-/// Texture coordinates on the lattice, y up.
-Point point_of(const glm::vec2& texcoord) {
-    return {static_cast<std::int64_t>(texcoord.x * 0x1p24),
-            static_cast<std::int64_t>(0x1p24 - texcoord.y * 0x1p24)};
-}
-
-std::int64_t area_of(const Point& a, const Point& b, const Point& c) {
-    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
-/// True if an edge of `a` has all of `b` on its outer side.
-bool separates(const Corners& a, const Corners& b) {
-    for (std::size_t i = 0; i < 3; ++i) {
-        const auto is_outside = [&](const Point& p) {
-            return area_of(a[i], a[(i + 1) % 3], p) <= 0;
-        };
-        if (std::all_of(b.begin(), b.end(), is_outside)) return true;
-    }
-    return false;
-}
-
-/// The triangles of an atlas that have a chart.
-struct Checked {
-    std::vector<Corners> corners;
-    std::vector<std::uint32_t> chart;
-    std::size_t without_chart = 0;
-};
-
-Checked triangles_of(const Unwrapped& unwrapped) {
-    Checked result;
-    for (std::size_t t = 0; t < unwrapped.chart.size(); ++t) {
-        if (!unwrapped.chart[t]) {
-            ++result.without_chart;
-            continue;
-        }
-        const glm::vec2* const uv = &unwrapped.corner_texcoords[3 * t];
-        result.corners.push_back({point_of(uv[0]), point_of(uv[1]), point_of(uv[2])});
-        result.chart.push_back(*unwrapped.chart[t]);
-    }
-    return result;
-}
-
-/// Returns the first violation of what unwrap() promises for every mesh, or an empty string.
-std::string broken_promise(const Unwrapped& unwrapped) {
-    for (const glm::vec2& uv : unwrapped.corner_texcoords) {
-        for (const float x : {uv.x, uv.y}) {
-            if (!(x >= 0.0F && x <= 1.0F)) return "a coordinate outside of [0,1]";
-            if (std::floor(x * 0x1p24) != x * 0x1p24) return "a coordinate off the lattice";
-        }
-    }
-    const Checked checked = triangles_of(unwrapped);
-    std::vector<std::size_t> order(checked.corners.size());
-    const auto low = [&](std::size_t i) {
-        const Corners& c = checked.corners[i];
-        return std::min({c[0].x, c[1].x, c[2].x});
-    };
-    const auto high = [&](std::size_t i) {
-        const Corners& c = checked.corners[i];
-        return std::max({c[0].x, c[1].x, c[2].x});
-    };
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        order[i] = i;
-        const Corners& c = checked.corners[i];
-        if (area_of(c[0], c[1], c[2]) <= 0) return "an inverted or flat triangle";
-    }
-    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return low(a) < low(b); });
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const Corners& a = checked.corners[order[i]];
-        for (std::size_t j = i + 1; j < order.size() && low(order[j]) < high(order[i]); ++j) {
-            const Corners& b = checked.corners[order[j]];
-            const auto is_corner = [&](const Point& p) {
-                return std::find(a.begin(), a.end(), p) != a.end();
-            };
-            // Repeated triangles have the same coordinates.
-            if (std::all_of(b.begin(), b.end(), is_corner)) continue;
-            if (!separates(a, b) && !separates(b, a)) return "triangles that overlap";
-        }
-    }
-    return "";
-}
 
 double distance(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
     const glm::dvec2 edge = b - a;
@@ -635,7 +545,8 @@ TEST(Unwrap, FollowsDensities) {
     EXPECT_EQ(broken_promise(divided), "");
     const auto area = [&](std::size_t triangle) {
         const glm::vec2* const uv = &divided.corner_texcoords[3 * triangle];
-        return static_cast<double>(area_of(point_of(uv[0]), point_of(uv[1]), point_of(uv[2])));
+        return static_cast<double>(
+            test::area_of(test::point_of(uv[0]), test::point_of(uv[1]), test::point_of(uv[2])));
     };
     EXPECT_NEAR(area(1) / area(0), 9.0, 0.01);
     options.densities = {1.0F, 1.9F};
@@ -728,185 +639,6 @@ TEST(Unwrap, RefusesOptionsOutOfRange) {
     Unwrapped other;
     EXPECT_EQ(message_of<InvalidInput>([&] { with_texcoords(square, other); }),
               "there are 0 texture coordinates for 2 triangles");
-}
-
-TEST(Unwrap, HasAResultForEveryMesh) {
-    std::vector<test::NamedMesh> meshes = test::hard_meshes();
-    for (std::uint32_t seed = 0; seed < (test::is_sanitized ? 8 : 60); ++seed) {
-        meshes.push_back({"random " + std::to_string(seed), test::random_mesh(seed)});
-        meshes.push_back({"hostile " + std::to_string(seed), test::hostile_mesh(seed)});
-    }
-    meshes.push_back({"empty", {}});
-    UnwrapOptions options;
-    options.size = {512, 512};
-    options.padding = 1;
-    UnwrapOptions conformal = options;
-    conformal.flattening = Flattening::conformal;
-    for (std::size_t i = 0; i < meshes.size(); i += 3)
-        EXPECT_EQ(broken_promise(unwrap(meshes[i].mesh, conformal)), "") << meshes[i].name;
-    for (const auto& [name, mesh] : meshes) {
-        Report report;
-        const Unwrapped unwrapped = unwrap(mesh, options, report);
-        EXPECT_EQ(broken_promise(unwrapped), "") << name;
-        EXPECT_EQ(triangles_of(unwrapped).without_chart,
-                  report.count("triangle without area") +
-                      report.count("triangle with a non-finite corner"))
-            << name;
-        const FramedMesh framed = with_texcoords(mesh, unwrapped);
-        ASSERT_EQ(framed.mesh.triangles.size(), mesh.triangles.size()) << name;
-        for (std::size_t corner = 0; corner < 3 * mesh.triangles.size(); ++corner) {
-            const std::uint32_t vertex = test::vertex_at(framed.mesh, corner);
-            EXPECT_EQ(framed.source_vertex[vertex], test::vertex_at(mesh, corner)) << name;
-            EXPECT_EQ(framed.mesh.texcoords[vertex], unwrapped.corner_texcoords[corner]) << name;
-        }
-    }
-}
-
-/// A strip of `count` quadrilaterals that is joined to itself after half a twist.
-Mesh moebius(std::uint32_t count) {
-    Mesh mesh;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const double turn = 2.0 * std::numbers::pi * i / count;
-        for (const double side : {-0.3, 0.3}) {
-            const double radius = 1.0 + side * std::cos(0.5 * turn);
-            mesh.positions.emplace_back(radius * std::cos(turn), radius * std::sin(turn),
-                                        side * std::sin(0.5 * turn));
-        }
-    }
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const bool is_last = i + 1 == count;
-        const std::uint32_t a = 2 * i;
-        const std::uint32_t b = is_last ? 1 : a + 2;
-        const std::uint32_t c = is_last ? 0 : a + 3;
-        mesh.triangles.emplace_back(a, b, c);
-        mesh.triangles.emplace_back(a, c, a + 1);
-    }
-    return mesh;
-}
-
-/// Triangles that share one edge, around which they are evenly distributed.
-Mesh book(std::uint32_t pages) {
-    Mesh mesh = mesh_from({{0, 0, 0}, {0, 0, 1}}, {});
-    for (std::uint32_t i = 0; i < pages; ++i) {
-        const double turn = 2.0 * std::numbers::pi * i / pages;
-        mesh.positions.emplace_back(std::cos(turn), std::sin(turn), 0.5);
-        if (i % 2 == 0)
-            mesh.triangles.emplace_back(0, 1, i + 2);
-        else
-            mesh.triangles.emplace_back(1, 0, i + 2);
-    }
-    return mesh;
-}
-
-/// Separate triangles of 1 x `height`.
-Mesh slivers(std::uint32_t count, float height) {
-    Mesh mesh;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const auto y = static_cast<float>(i);
-        const std::uint32_t first = 3 * i;
-        mesh.positions.insert(mesh.positions.end(),
-                              {{0.0F, y, 0.0F}, {1.0F, y, 0.0F}, {0.5F, y + height, 0.0F}});
-        mesh.triangles.emplace_back(first, first + 1, first + 2);
-    }
-    return mesh;
-}
-
-TEST(Unwrap, HandlesHardTopology) {
-    UnwrapOptions options;
-    options.padding = 1;
-    const Unwrapped strip = unwrap(moebius(200), options);
-    EXPECT_EQ(broken_promise(strip), "");
-    EXPECT_LE(strip.stats.charts, 8U);
-    EXPECT_EQ(broken_promise(unwrap(test::fan(1000), options)), "");
-    Report report;
-    EXPECT_EQ(broken_promise(unwrap(book(500), options, report)), "");
-    EXPECT_EQ(report.count("edge of more than two triangles, or of two in one direction"), 1U);
-    const Unwrapped thin = unwrap(slivers(1000, 1e-4F), options);
-    EXPECT_EQ(broken_promise(thin), "");
-    EXPECT_EQ(thin.stats.charts, 1000U);
-}
-
-// A strip of 12,000 slivers, which are longer than wide by a factor of 10,000.
-TEST(Unwrap, JoinsSlivers) {
-    constexpr std::uint32_t count = 6000;
-    Mesh mesh;
-    for (std::uint32_t i = 0; i <= count; ++i)
-        for (const float y : {0.0F, 1.0F})
-            mesh.positions.emplace_back(1e-4F * static_cast<float>(i), y, 0.0F);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        mesh.triangles.emplace_back(2 * i, 2 * i + 2, 2 * i + 3);
-        mesh.triangles.emplace_back(2 * i, 2 * i + 3, 2 * i + 1);
-    }
-    const Unwrapped unwrapped = unwrap(mesh);
-    EXPECT_EQ(unwrapped.stats.charts, 1U);
-    EXPECT_NEAR(unwrapped.stats.stretch, 1.0, 1e-3);
-}
-
-// A surface that covers itself twice is divided, and so is one whose flat image would overlap.
-TEST(Unwrap, DividesASpiralStaircase) {
-    Mesh mesh;
-    constexpr std::uint32_t steps = 200;
-    for (std::uint32_t i = 0; i <= steps; ++i) {
-        const double turn = 6.0 * std::numbers::pi * i / steps;
-        for (const double radius : {0.5, 1.0})
-            mesh.positions.emplace_back(radius * std::cos(turn), radius * std::sin(turn),
-                                        0.002 * i);
-    }
-    for (std::uint32_t i = 0; i < steps; ++i) {
-        mesh.triangles.emplace_back(2 * i, 2 * i + 1, 2 * i + 3);
-        mesh.triangles.emplace_back(2 * i, 2 * i + 3, 2 * i + 2);
-    }
-    const Unwrapped unwrapped = unwrap(mesh);
-    EXPECT_EQ(broken_promise(unwrapped), "");
-    EXPECT_GE(unwrapped.stats.charts, 3U) << "three turns above each other";
-    EXPECT_LE(unwrapped.stats.charts, 18U) << "each turn is cut";
-}
-
-class UnwrapChanges : public testing::TestWithParam<test::MeshChange> {};
-
-TEST_P(UnwrapChanges, ChangeNoCoordinate) {
-    UnwrapOptions options;
-    options.size = {256, 256};
-    options.padding = 1;
-    // The changes have the same meshes, so that cases of one process unwrap each mesh only once.
-    static std::map<std::uint32_t, Unwrapped> unwrapped_meshes;
-    Dice dice(47);
-    for (std::uint32_t seed = 0; seed < (test::is_sanitized ? 12 : 25); ++seed) {
-        const Mesh mesh = test::random_mesh(seed);
-        MeshVariant variant(mesh);
-        GetParam().apply(variant, dice);
-        options.flattening = seed % 2 == 0 ? Flattening::arap : Flattening::conformal;
-        const auto [place, is_new] = unwrapped_meshes.try_emplace(seed);
-        if (is_new) place->second = unwrap(mesh, options);
-        const Unwrapped& before = place->second;
-        const Unwrapped after = unwrap(variant.mesh, options);
-        for (std::size_t corner = 0; corner < variant.original.size(); ++corner) {
-            const std::uint32_t original = variant.original[corner];
-            if (original == MeshVariant::added) continue;
-            ASSERT_EQ(after.corner_texcoords[corner], before.corner_texcoords[original])
-                << "mesh " << seed << ", corner " << corner;
-        }
-        EXPECT_EQ(after.stats.charts, before.stats.charts);
-    }
-}
-
-INSTANTIATE_TEST_SUITE_P(Unwrap, UnwrapChanges, testing::ValuesIn(test::tested_changes),
-                         [](const auto& instance) { return std::string(instance.param.name); });
-
-TEST(Unwrap, DoesNotDependOnThreads) {
-    const Mesh torus = make_torus(0.4F, 48, 24);
-    UnwrapOptions options;
-    options.execution.threads = 1;
-    const Unwrapped one = unwrap(torus, options);
-    options.execution.threads = 7;
-    const Unwrapped many = unwrap(torus, options);
-    EXPECT_TRUE(test::same_bits(one.corner_texcoords, many.corner_texcoords));
-    options.flattening = Flattening::conformal;
-    const Unwrapped many_conformal = unwrap(torus, options);
-    options.execution.threads = 1;
-    const Unwrapped one_conformal = unwrap(torus, options);
-    EXPECT_TRUE(test::same_bits(one_conformal.corner_texcoords, many_conformal.corner_texcoords));
-    EXPECT_FALSE(test::same_bits(one.corner_texcoords, one_conformal.corner_texcoords));
 }
 
 TEST(Unwrap, CanBeCancelled) {
