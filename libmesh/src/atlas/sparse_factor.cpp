@@ -192,7 +192,8 @@ void SparseFactor::order_unknowns(std::span<const Entry> entries,
     std::vector<std::uint32_t> node_of = Bisection(positions, entries, depth).sets();
     // Entries between the two halves of a node, the root first.
     const auto split = [&](const Entry& entry) {
-        return std::bit_width(node_of[entry.a] ^ node_of[entry.b]);  // 0: in one set.
+        // 0 if both are in one set.
+        return static_cast<int>(std::bit_width(node_of[entry.a] ^ node_of[entry.b]));
     };
     std::vector<std::uint32_t> begin(static_cast<std::size_t>(depth) + 2, 0);
     const auto bucket = [&](const Entry& entry) {
