@@ -22,6 +22,9 @@ struct BakeArrays {
     py::object curvature = py::none();
     py::object positions = py::none();
     py::object colors = py::none();
+    py::object bent_normals = py::none();
+    py::object thickness = py::none();
+    py::object ids = py::none();
     py::array_t<std::uint8_t> states;
 };
 
@@ -36,6 +39,25 @@ struct LayerMemory {
                       first + row * static_cast<std::size_t>(first_row));
     }
 };
+
+/// The same of ids.
+struct IdMemory {
+    std::int32_t* first = nullptr;
+    std::size_t row = 0;
+
+    void store(std::span<const float> ids, int first_row) const {
+        if (first == nullptr) return;
+        std::transform(ids.begin(), ids.end(), first + row * static_cast<std::size_t>(first_row),
+                       [](float id) { return static_cast<std::int32_t>(id); });
+    }
+};
+
+IdMemory new_ids(const BakeMapOptions& map, py::object& array) {
+    if (!map.layers.ids) return {};
+    py::array_t<std::int32_t> ids(std::vector<py::ssize_t>{map.height, map.width});
+    array = ids;
+    return {ids.mutable_data(), static_cast<std::size_t>(map.width)};
+}
 
 LayerMemory new_layer(bool is_wanted, const BakeMapOptions& map, int channels, py::object& array) {
     if (!is_wanted) return {};
@@ -55,8 +77,8 @@ void check_size(int width, int height) {
     }
 }
 
-BakeLayers layers_of(const std::vector<std::string>& names, int occlusion_rays,
-                     std::optional<double> occlusion_distance) {
+BakeLayers layers_of(const std::vector<std::string>& names, const OcclusionOptions& occlusion,
+                     const ThicknessOptions& thickness) {
     BakeLayers layers;
     layers.normals = false;
     for (const std::string& name : names) {
@@ -65,21 +87,29 @@ BakeLayers layers_of(const std::vector<std::string>& names, int occlusion_rays,
         else if (name == "heights")
             layers.heights = true;
         else if (name == "occlusion")
-            layers.occlusion = OcclusionOptions{occlusion_rays, occlusion_distance};
+            layers.occlusion = occlusion;
         else if (name == "curvature")
             layers.curvature = true;
         else if (name == "positions")
             layers.positions = true;
         else if (name == "colors")
             layers.colors = true;
+        else if (name == "bent_normals")
+            layers.bent_normals = occlusion;
+        else if (name == "thickness")
+            layers.thickness = thickness;
+        else if (name == "ids")
+            layers.ids = true;
         else
             refuse_name("layers", name,
-                        {"normals", "heights", "occlusion", "curvature", "positions", "colors"});
+                        {"normals", "heights", "occlusion", "curvature", "positions", "colors",
+                         "bent_normals", "thickness", "ids"});
     }
     return layers;
 }
 
-py::dict report_of(const BakeResult& result, const BakeFit& fit, const Report& findings) {
+py::dict report_of(const BakeResult& result, const BakeFit& fit, const std::vector<SurfaceId>& ids,
+                   const Report& findings) {
     py::list first;
     for (const MissedTexel& texel : result.first_missed) {
         py::dict entry;
@@ -104,6 +134,16 @@ py::dict report_of(const BakeResult& result, const BakeFit& fit, const Report& f
     report["samples"] = result.samples;
     report["rays"] = result.rays;
     report["occlusion_rays"] = result.occlusion_rays;
+    report["thickness_rays"] = result.thickness_rays;
+    report["open_thickness_rays"] = result.open_thickness_rays;
+    py::list names;
+    for (const SurfaceId& id : ids) {
+        py::dict entry;
+        entry["name"] = id.name;
+        entry["color"] = color_text(id);
+        names.append(std::move(entry));
+    }
+    report["ids"] = std::move(names);
     report["boxes"] = std::move(boxes);
     report["missed"] = std::move(missed);
     report["findings"] = to_list(findings);
@@ -136,7 +176,8 @@ py::dict py_bake(const py::object& high, const MeshObject& low, std::pair<int, i
                  std::optional<double> offset, std::optional<double> max_distance,
                  const std::string& back_faces, int samples, std::optional<double> sample_degrees,
                  const std::string& outside, int padding, int occlusion_rays,
-                 std::optional<double> occlusion_distance, bool allow_size_mismatch,
+                 std::optional<double> occlusion_distance, int thickness_rays,
+                 std::optional<double> thickness_distance, bool allow_size_mismatch,
                  const std::optional<py::function>& progress) {
     constexpr auto faces =
         std::to_array<EnumName<BackFaces>>({{"skip", BackFaces::skip}, {"take", BackFaces::take}});
@@ -146,7 +187,8 @@ py::dict py_bake(const py::object& high, const MeshObject& low, std::pair<int, i
     options.map.width = size.first;
     options.map.height = size.second;
     options.map.placement.repeat = value_of<bool>(outside, "outside", regions);
-    options.map.layers = layers_of(layers, occlusion_rays, occlusion_distance);
+    options.map.layers = layers_of(layers, {occlusion_rays, occlusion_distance},
+                                   {thickness_rays, thickness_distance});
     options.space = value_of<VectorSpace>(space, "space");
     options.directions = value_of<RayDirections>(rays, "rays");
     options.hardness = hardness;
@@ -169,6 +211,11 @@ py::dict py_bake(const py::object& high, const MeshObject& low, std::pair<int, i
     const LayerMemory curvature = new_layer(wanted.curvature, options.map, 1, arrays.curvature);
     const LayerMemory positions = new_layer(wanted.positions, options.map, 3, arrays.positions);
     const LayerMemory colors = new_layer(wanted.colors, options.map, 3, arrays.colors);
+    const LayerMemory bent_normals =
+        new_layer(wanted.bent_normals.has_value(), options.map, 3, arrays.bent_normals);
+    const LayerMemory thickness =
+        new_layer(wanted.thickness.has_value(), options.map, 1, arrays.thickness);
+    const IdMemory ids = new_ids(options.map, arrays.ids);
     arrays.states =
         py::array_t<std::uint8_t>(std::vector<py::ssize_t>{options.map.height, options.map.width});
     std::uint8_t* const states = arrays.states.mutable_data();
@@ -176,9 +223,11 @@ py::dict py_bake(const py::object& high, const MeshObject& low, std::pair<int, i
 
     Report findings;
     BakeFit fit;
+    std::vector<SurfaceId> names;
     const auto work = [&] {
         const Baker baker(meshes.span, low, options, findings);
         fit = baker.fit();
+        names = baker.ids();
         return baker.bake(
             options.map,
             [&](const BakedRows& rows) {
@@ -188,6 +237,9 @@ py::dict py_bake(const py::object& high, const MeshObject& low, std::pair<int, i
                 curvature.store(rows.curvature, rows.first_row);
                 positions.store(rows.positions, rows.first_row);
                 colors.store(rows.colors, rows.first_row);
+                bent_normals.store(rows.bent_normals, rows.first_row);
+                thickness.store(rows.thickness, rows.first_row);
+                ids.store(rows.ids, rows.first_row);
                 std::transform(rows.states.begin(), rows.states.end(),
                                states + width * static_cast<std::size_t>(rows.first_row),
                                [](TexelState state) { return static_cast<std::uint8_t>(state); });
@@ -206,8 +258,11 @@ py::dict py_bake(const py::object& high, const MeshObject& low, std::pair<int, i
     baked["curvature"] = arrays.curvature;
     baked["positions"] = arrays.positions;
     baked["colors"] = arrays.colors;
+    baked["bent_normals"] = arrays.bent_normals;
+    baked["thickness"] = arrays.thickness;
+    baked["ids"] = arrays.ids;
     baked["states"] = arrays.states;
-    baked["report"] = report_of(result, fit, findings);
+    baked["report"] = report_of(result, fit, names, findings);
     return baked;
 }
 
@@ -222,8 +277,9 @@ void add_bake(py::module_& module) {
         arg("rays") = "averaged", arg("hardness") = 0.0, arg("cage") = none, arg("offset") = none,
         arg("max_distance") = none, arg("back_faces") = "skip", arg("samples") = 1,
         arg("sample_degrees") = none, arg("outside") = "drop", arg("padding") = 16,
-        arg("occlusion_rays") = 64, arg("occlusion_distance") = none,
-        arg("allow_size_mismatch") = false, arg("progress") = none,
+        arg("occlusion_rays") = 64, arg("occlusion_distance") = none, arg("thickness_rays") = 64,
+        arg("thickness_distance") = none, arg("allow_size_mismatch") = false,
+        arg("progress") = none,
         "Bake maps of `size` (width, height) for a low mesh from one or more high meshes.\n\n"
         "See relief.bake() for the result.");
 }

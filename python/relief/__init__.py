@@ -77,7 +77,7 @@ if TYPE_CHECKING:
     import numpy
     import numpy.typing
 
-    from ._relief import FloatArray, Floats, Indices, Layer, Rays, Report, Space, States
+    from ._relief import FloatArray, Floats, IdArray, Indices, Layer, Rays, Report, Space, States
 
 __all__ = [
     "BakeMismatch", "Baked", "Cancelled", "Error", "Execution", "FileError", "Finding", "GpuError", "InvalidInput",
@@ -108,7 +108,7 @@ class Finding(TypedDict):
 class Baked:
     """The arrays of a bake. Layers that were not requested are None.
 
-    All arrays have one entry per texel. `normals`, `positions` and `colors` have three channels.
+    All arrays have one entry per texel. `normals`, `positions`, `colors` and `bent_normals` have three channels.
     """
 
     normals: Floats | None
@@ -117,13 +117,18 @@ class Baked:
     curvature: Floats | None
     positions: Floats | None
     colors: Floats | None
+    bent_normals: Floats | None
+    thickness: Floats | None
+    """The mean distance to the surface behind, in the unit of the meshes."""
+    ids: IdArray | None
+    """Indices in `report["ids"]`, a list of names and colors; -1 in texels that are neither baked nor padded."""
     states: States
     """0: no chart; 1: missed, because no ray hit a surface; 2: baked; 3: padded."""
     report: dict[str, Any]
     """Results and findings, with the keys of `relief-bake mesh --report`."""
 
     def __repr__(self) -> str:
-        layers = [field.name for field in dataclasses.fields(self)[:6] if getattr(self, field.name) is not None]
+        layers = [field.name for field in dataclasses.fields(self)[:9] if getattr(self, field.name) is not None]
         height, width = self.states.shape
         return f"<relief.Baked of {width} x {height} texels: {', '.join(layers)}>"
 
@@ -148,6 +153,8 @@ def bake(
     padding: int = 16,
     occlusion_rays: int = 64,
     occlusion_distance: float | None = None,
+    thickness_rays: int = 64,
+    thickness_distance: float | None = None,
     allow_size_mismatch: bool = False,
     progress: Callable[[float], object] | None = None,
 ) -> Baked:
@@ -155,8 +162,9 @@ def bake(
 
     The low mesh needs texture coordinates: unwrap() computes them. The options are those of `relief-bake mesh`;
     several high meshes are copied, a single one is not. Layers are float32 of shape (height, width), or (height,
-    width, 3). Encode the normals with encode_normals(). `progress` is called with the finished fraction, from 0.0
-    to 1.0, after each band of rows; an exception of it ends the bake.
+    width, 3); `ids` are int32. Ids are those of the materials of the high meshes, "material-N", and of the names of
+    meshes without materials. Encode normals and bent normals with encode_normals(). `progress` is called with the
+    finished fraction, from 0.0 to 1.0, after each band of rows; an exception of it ends the bake.
 
     Raises BakeMismatch if the meshes do not fit, InvalidInput for wrong options or missing texture coordinates, and
     TypeError for wrong types.
@@ -165,6 +173,7 @@ def bake(
         high, low, size, layers=list(layers), space=space, rays=rays, hardness=hardness, cage=cage, offset=offset,
         max_distance=max_distance, back_faces=back_faces, samples=samples, sample_degrees=sample_degrees,
         outside=outside, padding=padding, occlusion_rays=occlusion_rays, occlusion_distance=occlusion_distance,
+        thickness_rays=thickness_rays, thickness_distance=thickness_distance,
         allow_size_mismatch=allow_size_mismatch, progress=progress))
 
 

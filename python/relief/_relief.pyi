@@ -18,6 +18,7 @@ Indices = numpy.typing.NDArray[numpy.uint32]
 FloatArray = numpy.typing.NDArray[numpy.floating[Any]] | numpy.typing.NDArray[numpy.integer[Any]]
 IntegerArray = numpy.typing.NDArray[numpy.integer[Any]]
 States = numpy.typing.NDArray[numpy.uint8]
+IdArray = numpy.typing.NDArray[numpy.int32]
 # uint8, uint16 or float32.
 Image = numpy.typing.NDArray[Any]
 File = str | os.PathLike[str]
@@ -44,7 +45,7 @@ TextureFormat = Literal[
     "r8", "rg8", "rgba8", "r16", "rg16", "rgba16", "r16f", "rg16f", "rgba16f", "r32f", "rg32f", "rgba32f",
     "bc4", "bc4-snorm", "bc5", "bc5-snorm", "bc7", "bc1", "bc1a", "bc3", "bc6h", "bc6h-sfloat",
 ]
-Layer = Literal["normals", "heights", "occlusion", "curvature", "positions", "colors"]
+Layer = Literal["normals", "heights", "occlusion", "curvature", "positions", "colors", "bent_normals", "thickness", "ids"]
 Space = Literal["tangent", "object", "world"]
 Rays = Literal["averaged", "shading", "face"]
 
@@ -369,6 +370,8 @@ def bake(
     padding: int = 16,
     occlusion_rays: int = 64,
     occlusion_distance: float | None = None,
+    thickness_rays: int = 64,
+    thickness_distance: float | None = None,
     allow_size_mismatch: bool = False,
     progress: Callable[[float], object] | None = None,
 ) -> dict[str, Any]: ...

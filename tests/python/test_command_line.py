@@ -361,20 +361,27 @@ class Bakes(CommandLineCase):
     def test_bake(self):
         high, low = DATA / "urn-high.ply", DATA / "urn-low.obj"
         out = self.folder / "map.png"
-        layers = {"heights": "height", "occlusion": "occlusion", "curvature": "curvature"}
+        layers = {"heights": "height", "occlusion": "occlusion", "curvature": "curvature", "thickness": "thickness"}
         words = [word for name in layers.values() for word in (f"--{name}-map", str(self.folder / f"{name}.exr"))]
         report = relief.run("relief-bake", "mesh", high, low, out, "--size", "128x96", "--samples", "4",
-                            "--occlusion-rays", "16", *words, report=True)
+                            "--occlusion-rays", "16", "--thickness-rays", "8", "--bent-normal-map",
+                            self.folder / "bent.png", "--id-map", self.folder / "ids.png", *words, report=True)
         baked = relief.bake(relief.read_mesh(high), relief.read_mesh(low), (128, 96), samples=4, occlusion_rays=16,
-                            layers=["normals", *layers])
+                            thickness_rays=8, layers=["normals", "bent_normals", "ids", *layers])
         numpy.testing.assert_array_equal(relief.encode_normals(baked.normals), relief.read_image(out)[0])
         for name, file in layers.items():
             numpy.testing.assert_array_equal(getattr(baked, name),
                                              relief.read_image(self.folder / f"{file}.exr")[0], name)
+        numpy.testing.assert_array_equal(relief.encode_normals(baked.bent_normals),
+                                         relief.read_image(self.folder / "bent.png")[0])
+        self.assertEqual(baked.ids.dtype, numpy.int32)
+        numpy.testing.assert_array_equal(baked.ids, numpy.where(baked.states >= 2, 0, -1))
+        self.assertEqual(len(baked.report["ids"]), 1)
+        self.assertEqual(len(report["maps"][0]["layers"][-1]["ids"]), 1)
         self.assertIsNone(baked.colors)
         self.assertEqual(baked.states.shape, (96, 128))
         for name in ("offset", "max_distance", "min_height", "max_height", "texels_baked", "texels_missed",
-                     "samples", "rays", "occlusion_rays"):
+                     "samples", "rays", "occlusion_rays", "thickness_rays", "open_thickness_rays"):
             self.assertEqual(baked.report[name], report[name], name)
         self.assertEqual(baked.report["texels_baked"], int((baked.states == 2).sum()))
 
