@@ -221,12 +221,10 @@ std::vector<std::uint32_t> Maker::parts_of_dense_surface() const {
     return low_parts_;
 }
 
-/// Returns why each part of the asset sees all of the source; empty if it sees its own part.
+/// Returns why each part of the asset sees all parts of the source; empty if it sees its own.
 std::string Maker::reason_for_one_part() const {
     if (options_.match == PartMatching::all) return "it was requested";
-    if (source_.parts.names.size() < 2) return "the model has one part";
-    if (high_parts_.names.size() < 2)
-        return "the parts of the model touch each other or have one name";
+    if (high_parts_.names.size() < 2) return "the parts of the model touch each other";
     if (closed_ || (options_.start && options_.start->is_remeshed))
         return "a closed surface replaces the parts";
     if (!unmatched_.empty()) return "the model has no part " + unmatched_;
@@ -236,6 +234,7 @@ std::string Maker::reason_for_one_part() const {
 
 /// Decides whether parts are matched. \throws InvalidInput if they must be, but cannot
 void Maker::match_parts(Report& report) {
+    if (source_.parts.names.size() < 2) return;
     PartDecision& decision = asset_.parts;
     decision.reason = reason_for_one_part();
     decision.is_matched = decision.reason.empty();
@@ -243,7 +242,9 @@ void Maker::match_parts(Report& report) {
     if (!decision.is_matched) {
         if (options_.match == PartMatching::name && !unmatched_.empty())
             throw InvalidInput("parts cannot be matched by name: " + decision.reason);
-        if (source_.parts.names.size() > 1 && options_.match != PartMatching::all)
+        const bool lacks_names = !unmatched_.empty() || (options_.start && low_parts_.empty());
+        if (lacks_names && high_parts_.names.size() > 1 && options_.match != PartMatching::all &&
+            !options_.start->is_remeshed)
             report.add("parts that are not matched by name", "asset", 0,
                        "see all parts of the model: " + decision.reason);
         return;

@@ -85,13 +85,14 @@ class BakedAsset : public testing::Test {
 TEST_F(BakedAsset, IsTheSameIfNoMapWasEdited) {
     for (const char* name : {"normal", "color", "orm", "emission", "height"})
         ASSERT_TRUE(std::filesystem::exists(map(name))) << name;
-    const std::string engine_map = workplace.read("out/a_MetallicSmoothness.png");
+    const std::string engine_map = workplace.read("out/a_MaskMap.png");
+    ASSERT_FALSE(engine_map.empty());
     std::filesystem::remove(workplace / "out/a.glb");
     const json before = json::parse(workplace.read("out/a.json"));
     const ProgramResult result = run("--from write");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_TRUE(workplace.read("out/a.glb") == asset) << "other bytes";
-    EXPECT_EQ(workplace.read("out/a_MetallicSmoothness.png"), engine_map);
+    EXPECT_EQ(workplace.read("out/a_MaskMap.png"), engine_map);
     EXPECT_THAT(result.out, Not(HasSubstr("that was edited")));
     const json after = json::parse(workplace.read("out/a.json"));
     for (const char* key : {"maps", "material", "texels_baked", "rays", "levels", "source"})
@@ -136,8 +137,11 @@ TEST_F(BakedAsset, HasAnEditedMapInAllForms) {
     std::ranges::fill(orm.as<std::uint8_t>(), 0);
     write_image(map("orm"), orm);
     ASSERT_EQ(run("--from write").exit_code, 0);
-    const Image smooth = read_image(workplace / "out/a_MetallicSmoothness.png", ImageUse::data);
-    EXPECT_EQ(smooth.as<std::uint8_t>()[static_cast<std::size_t>(smooth.channels) - 1], 255);
+    const Image mask = read_image(workplace / "out/a_MaskMap.png", ImageUse::data);
+    const auto codes = mask.as<std::uint8_t>();
+    ASSERT_EQ(mask.channels, 4);
+    for (std::size_t i = 3; i < codes.size(); i += 4)
+        ASSERT_EQ(codes[i], 255) << "smoothness";
 }
 
 TEST_F(BakedAsset, IsRefusedIfMapsDoNotFitOrAreStale) {

@@ -501,7 +501,7 @@ class Assets(unittest.TestCase):
 
     def test_make_has_the_defaults_of_the_command(self):
         with tempfile.TemporaryDirectory() as folder:
-            report = relief.make(DATA / "vase.obj", pathlib.Path(folder) / "a.glb", size=16)
+            report = relief.make(DATA / "vase.obj", pathlib.Path(folder) / "a.glb", size=256)
         other_keys = {"more_sources": "with", "engine": "for", "more_views": "views"}
         for name, parameter in self.make_arguments().items():
             if name in ("size", "keep_stages", "start"):

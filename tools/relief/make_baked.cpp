@@ -228,8 +228,8 @@ make::Asset read_baked(const MakeRequest& request, const make::AssetSource& sour
         asset.surface_has_occlusion = bake.at("surface_has_occlusion").get<bool>();
         asset.source_triangles = bake.at("source_triangles").get<std::size_t>();
         asset.parts.is_matched = bake.at("parts").at("matched").get<bool>();
-        if (!asset.parts.is_matched)
-            asset.parts.reason = bake.at("parts").at("reason").get<std::string>();
+        const Json& reason = bake.at("parts").at("reason");
+        if (reason.is_string()) asset.parts.reason = reason.get<std::string>();
         for (const Json& part : bake.at("parts").at("parts"))
             asset.parts.parts.push_back({part.at("name").get<std::string>(),
                                          part.at("source_triangles").get<std::size_t>(),

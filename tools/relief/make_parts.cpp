@@ -29,6 +29,7 @@ void add_named_parts(const MapModelPart& part, const std::string& file, BakeSide
 
 std::vector<std::string> part_lines(const make::PartDecision& decision) {
     constexpr std::size_t max_named = 8;
+    if (!decision.reason.empty()) return {"not matched by name: " + decision.reason};
     if (!decision.is_matched) return {};
     std::string names;
     for (std::size_t i = 0; i < std::min(decision.parts.size(), max_named); ++i)
@@ -39,7 +40,7 @@ std::vector<std::string> part_lines(const make::PartDecision& decision) {
 
 Json parts_json(const make::PartDecision& decision) {
     return {{"matched", decision.is_matched},
-            {"reason", decision.is_matched ? Json() : Json(decision.reason)},
+            {"reason", decision.reason.empty() ? Json() : Json(decision.reason)},
             {"parts", json_list(decision.parts, [](const make::AssetPart& part) -> Json {
                  return {{"name", part.name},
                          {"source_triangles", part.source_triangles},

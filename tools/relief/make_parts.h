@@ -20,7 +20,8 @@ namespace relief::tools {
 void add_named_parts(const MapModelPart& part, const std::string& file, BakeSide side,
                      make::NamedParts& parts);
 
-/// "3 matched by name: lid, base + hinge, handle"; empty if the model has one part.
+/// "3 matched by name: lid, base + hinge, handle", or "not matched by name: it was requested";
+/// empty if the model has one part.
 std::vector<std::string> part_lines(const make::PartDecision& decision);
 Json parts_json(const make::PartDecision& decision);
 

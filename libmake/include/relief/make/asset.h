@@ -158,7 +158,8 @@ struct AssetPart {
 /// Rays of occlusion hit all parts.
 struct PartDecision {
     bool is_matched = false;
-    std::string reason;            ///< Why parts are not matched; empty if they are.
+    /// Why parts are not matched; empty if they are, or if the source has one part.
+    std::string reason;
     std::vector<AssetPart> parts;  ///< If they are matched.
     NamedParts of_asset;           ///< The parts of Asset::mesh; without names they are not known.
 };
