@@ -120,29 +120,32 @@ struct Tolerances {
 std::string map_difference(const Baked& before, const Baked& after, double scale,
                            const Tolerances& tolerances) {
     const std::size_t texels = before.states.size();
-    std::size_t others = 0;
+    std::vector<bool> differs(texels, false);
     std::string first;
+    const auto add = [&](std::size_t texel, const std::string& how) {
+        if (first.empty()) first = fmt::format("texel {}: {}", texel, how);
+        differs[texel] = true;
+    };
     for (std::size_t texel = 0; texel < texels; ++texel) {
         const auto normal = [&](const Baked& map) {
             return glm::dvec3(map.normals[3 * texel], map.normals[3 * texel + 1],
                               map.normals[3 * texel + 2]);
         };
         if (before.states[texel] != after.states[texel]) {
-            if (others++ == 0) first = fmt::format("texel {}: another state", texel);
+            add(texel, "another state");
             continue;
         }
         if (normal(before) == normal(after)) continue;
         const double degrees = degrees_between(normal(before), normal(after));
         if (tolerances.degrees > 0.0 && degrees <= tolerances.degrees) continue;
-        if (others++ == 0)
-            first = fmt::format("texel {}: a normal turned by {} degrees", texel, degrees);
+        add(texel, fmt::format("a normal turned by {} degrees", degrees));
     }
     const auto compare = [&](const char* name, const std::vector<float>& was,
                              const std::vector<float>& is, double factor, double limit) {
         for (std::size_t i = 0; i < was.size(); ++i) {
             const double value = double(is[i]) / factor;
             if (double(was[i]) == value || std::abs(double(was[i]) - value) <= limit) continue;
-            if (others++ == 0) first = fmt::format("{} {}: {} became {}", name, i, was[i], value);
+            add(i * texels / was.size(), fmt::format("{} {} became {}", name, was[i], value));
         }
     };
     compare("height", before.heights, after.heights, scale, tolerances.length);
@@ -151,8 +154,9 @@ std::string map_difference(const Baked& before, const Baked& after, double scale
     compare("occlusion", before.occlusion, after.occlusion, 1.0, tolerances.occlusion);
     compare("bent normal", before.bent_normals, after.bent_normals, 1.0, tolerances.bent);
     compare("thickness", before.thickness, after.thickness, scale, tolerances.thickness);
+    const auto others = std::count(differs.begin(), differs.end(), true);
     if (double(others) <= tolerances.others * double(texels)) return "";
-    return fmt::format("{} values, first {}", others, first);
+    return fmt::format("{} texels, first {}", others, first);
 }
 
 /// A scale by powers of two concerns both meshes.
