@@ -71,9 +71,9 @@ TEST(JobFile, IsRefusedWithTheLineAndTheKeyBeforeAnythingIsMade) {
         EXPECT_EQ(workplace.outputs(), "") << text;
     };
     const std::string good = R"({"input": "data/vase.obj", "output": "out/a.glb"})";
-    expect_fault(
-        "{\"assets\": [" + good + ",\n{\"input\": \"data/vase.obj\",\n\"trianlges\": 5}]}",
-        "line 3: assets[1].trianlges: unknown key (not one of input, output, with, triangles,");
+    expect_fault("{\"assets\": [" + good + ",\n{\"input\": \"data/vase.obj\",\n\"trianlges\": 5}]}",
+                 "line 3: assets[1].trianlges: unknown key (not one of input, output, with, up, "
+                 "triangles,");
     expect_fault("{\"defaults\":\n{\"report\": 5},\"assets\": [" + good + "]}",
                  "line 2: defaults.report: unknown key");
     expect_fault("{\"assets\": [" + good + "], \"version\": 1}", "line 1: version: unknown key");

@@ -37,7 +37,7 @@ TEST(MakePage, HasPicturesTablesAndTheCommandAndLoadsNothing) {
                           "x 64 texels."));
     EXPECT_GE(count_of(page,
                        "relief make data/urn-high.ply -o out/urn.glb --triangles 400 "
-                       "--size 64x64 --padding 2 --crease 60"),
+                       "--crease 60 --lods 1 "),
               1U);
     for (const char* text :
          {"<th scope=\"row\">decimate</th>", "<th scope=\"row\">LOD1</th>", "normals, 64 x 64",

@@ -64,9 +64,9 @@ struct RemeshOptions {
 /// threads. Time and memory grow with the square of the resolution.
 ///
 /// Source: [Ju et al. 2002]; winding numbers [Jacobson et al. 2013], [Barill et al. 2018]; several
-/// vertices in a cell [Schaefer et al. 2007], one for each component of the surface as in [Nielson
-/// 2004]. Deviation: where two cells share two edges of the result, which would not be manifold,
-/// these edges get vertices of their own.
+/// vertices in a cell [Schaefer et al. 2007], one for each component of the surface as in
+/// [Nielson 2004]. Deviation: where two cells share two edges of the result, which would not be
+/// manifold, these edges get vertices of their own.
 Mesh remeshed(const Mesh& mesh, const RemeshOptions& options, Report& report = IgnoredReport());
 
 }  // namespace relief
