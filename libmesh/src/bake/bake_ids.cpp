@@ -96,8 +96,7 @@ std::vector<NamedTriangles> names_by_material(const Mesh& mesh, std::span<const 
 
 std::vector<SurfaceId> surface_ids(std::vector<std::string> names) {
     std::ranges::sort(names);
-    const auto repeated = std::ranges::unique(names);
-    names.erase(repeated.begin(), repeated.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
     constexpr std::size_t max_ids = 65536;
     if (names.size() > max_ids) {
         throw InvalidInput(
