@@ -155,8 +155,8 @@ TEST(BakedIds, DoNotDependOnTheOrderOfTriangles) {
         std::ranges::stable_sort(mesh.triangles, {}, material_of);
         mesh.material_ranges.clear();
         for (std::uint32_t material = 0; material < 4; ++material) {
-            const auto [begin, end] =
-                std::ranges::equal_range(mesh.triangles, material, {}, material_of);
+            const auto begin = std::ranges::lower_bound(mesh.triangles, material, {}, material_of);
+            const auto end = std::ranges::upper_bound(mesh.triangles, material, {}, material_of);
             mesh.material_ranges.push_back(
                 {static_cast<std::uint32_t>(begin - mesh.triangles.begin()),
                  static_cast<std::uint32_t>(end - begin), material});
