@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <variant>
@@ -54,7 +55,8 @@ class BakedAsset : public testing::Test {
     [[nodiscard]] ProgramResult run(const std::string& more = "") const {
         return workplace.run(
             "relief make out/in.gltf -o out/a.glb --triangles 200 --size 64 --padding 1 "
-            "--occlusion-rays 2 --layers height --lods 1 --for unity --keep-stages out/s "
+            "--occlusion-rays 2 --layers height,bent,thickness,ids --lods 1 --for unity "
+            "--keep-stages out/s "
             "--report out/a.json " +
             more);
     }
@@ -83,19 +85,26 @@ class BakedAsset : public testing::Test {
 };
 
 TEST_F(BakedAsset, IsTheSameIfNoMapWasEdited) {
-    for (const char* name : {"normal", "color", "orm", "emission", "height"})
+    for (const char* name :
+         {"normal", "color", "orm", "emission", "height", "bent", "thickness", "ids"})
         ASSERT_TRUE(std::filesystem::exists(map(name))) << name;
-    const std::string engine_map = workplace.read("out/a_MaskMap.png");
-    ASSERT_FALSE(engine_map.empty());
+    std::map<std::string, std::string> beside;
+    for (const char* name : {"MaskMap", "height", "bent", "thickness", "ids"}) {
+        const std::string file = std::string("out/a_") + name + ".png";
+        beside[file] = workplace.read(file);
+        ASSERT_FALSE(beside[file].empty()) << file;
+    }
     std::filesystem::remove(workplace / "out/a.glb");
     const json before = json::parse(workplace.read("out/a.json"));
     const ProgramResult result = run("--from write");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_TRUE(workplace.read("out/a.glb") == asset) << "other bytes";
-    EXPECT_EQ(workplace.read("out/a_MaskMap.png"), engine_map);
+    for (const auto& [file, bytes] : beside)
+        EXPECT_TRUE(workplace.read(file) == bytes) << file;
     EXPECT_THAT(result.out, Not(HasSubstr("that was edited")));
     const json after = json::parse(workplace.read("out/a.json"));
-    for (const char* key : {"maps", "material", "texels_baked", "rays", "levels", "source"})
+    for (const char* key : {"maps", "material", "texels_baked", "rays", "occlusion_rays",
+                            "thickness_rays", "levels", "source"})
         EXPECT_EQ(after[key], before[key]) << key;
     std::vector<std::string> stages;
     for (const json& stage : after["stages"])

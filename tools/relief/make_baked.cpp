@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "make_cache.h"
 #include "make_parts.h"
 #include "make_stages.h"
+#include "mesh_maps.h"
 #include "relief/mesh/image_file.h"
 
 namespace relief::tools {
@@ -132,6 +134,22 @@ Image read_map(const std::filesystem::path& file, const MapForm& form) {
     return image;
 }
 
+/// The inverse of ids_json(). \throws InvalidInput if a color is damaged
+std::vector<SurfaceId> ids_of(const Json& json) {
+    std::vector<SurfaceId> ids;
+    for (const Json& id : json) {
+        const auto text = id.at("color").get<std::string>();
+        unsigned color = 0;
+        const char* const end = text.data() + text.size();
+        const bool is_hash = text.size() == 7 && text[0] == '#';
+        if (!is_hash || std::from_chars(text.data() + 1, end, color, 16).ptr != end)
+            throw InvalidInput("has a damaged color");
+        ids.push_back({id.at("name").get<std::string>(),
+                       glm::u8vec3(color >> 16, color >> 8 & 0xFFU, color & 0xFFU)});
+    }
+    return ids;
+}
+
 /// Reads the maps of a record into an asset.
 class MapReader {
   public:
@@ -182,7 +200,8 @@ Json baked_record(const std::filesystem::path& folder, const make::Asset& asset)
             {"layers", json_list(asset.layers,
                                  [](const make::AssetLayer& layer) -> Json {
                                      return {{"name", make::layer_name(layer.coding.kind)},
-                                             {"range", layer.coding.range}};
+                                             {"range", layer.coding.range},
+                                             {"ids", ids_json(layer.coding.ids)}};
                                  })},
             {"material", factors_json(asset.material)},
             {"surface_has_occlusion", asset.surface_has_occlusion},
@@ -192,6 +211,8 @@ Json baked_record(const std::filesystem::path& folder, const make::Asset& asset)
             {"texels_missed", bake.texels_missed},
             {"rays", bake.rays},
             {"occlusion_rays", bake.occlusion_rays},
+            {"thickness_rays", bake.thickness_rays},
+            {"open_thickness_rays", bake.open_thickness_rays},
             {"min_height", bake.min_height},
             {"max_height", bake.max_height}};
 }
@@ -221,8 +242,9 @@ make::Asset read_baked(const MakeRequest& request, const make::AssetSource& sour
             const LayerKind kind = request.asset.layers[i];
             std::optional<Image> image = maps.read(make::layer_name(kind));
             if (!image) throw InvalidInput("has no layer " + make::layer_name(kind));
-            asset.layers.push_back(
-                {{kind, image->bits(), layers.at(i).at("range").get<double>()}, std::move(*image)});
+            LayerCoding coding{kind, image->bits(), layers.at(i).at("range").get<double>()};
+            coding.ids = ids_of(layers.at(i).at("ids"));
+            asset.layers.push_back({std::move(coding), std::move(*image)});
         }
         set_factors(asset.material, bake.at("material"));
         asset.surface_has_occlusion = bake.at("surface_has_occlusion").get<bool>();
@@ -238,6 +260,8 @@ make::Asset read_baked(const MakeRequest& request, const make::AssetSource& sour
         asset.bake.texels_missed = bake.at("texels_missed").get<std::size_t>();
         asset.bake.rays = bake.at("rays").get<std::size_t>();
         asset.bake.occlusion_rays = bake.at("occlusion_rays").get<std::size_t>();
+        asset.bake.thickness_rays = bake.at("thickness_rays").get<std::size_t>();
+        asset.bake.open_thickness_rays = bake.at("open_thickness_rays").get<std::size_t>();
         asset.bake.min_height = bake.at("min_height").get<double>();
         asset.bake.max_height = bake.at("max_height").get<double>();
     } catch (const Json::exception&) {
