@@ -9,27 +9,22 @@
 #include <set>
 #include <tuple>
 
+#include "portable_math.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
+using namespace relief::detail;
+
 namespace {
 
 constexpr int min_brightness = 64;            // Of the largest channel.
 constexpr int max_difference = 32;            // Of the most different channel of two colors.
 constexpr int tries_of_each_difference = 64;  // Before the difference is halved.
 
-/// Returns a hash that decorrelates similar numbers. Source: [Steele et al. 2014].
-std::uint64_t scrambled(std::uint64_t bits) {
-    bits += 0x9e3779b97f4a7c15ULL;
-    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
-    return bits ^ (bits >> 31);
-}
-
 std::uint64_t hash_of(const std::string& name) {
     std::uint64_t hash = name.size();
     for (const char letter : name)
-        hash = scrambled(hash ^ static_cast<unsigned char>(letter));
+        hash = mixed_bits((hash ^ static_cast<unsigned char>(letter)) + split_mix_step);
     return hash;
 }
 
@@ -66,7 +61,8 @@ class UsedColors {
 glm::u8vec3 new_color(const std::string& name, const UsedColors& used) {
     std::uint64_t hash = hash_of(name);
     for (int min_difference = max_difference;; min_difference /= 2) {
-        for (int i = 0; i < tries_of_each_difference; ++i, hash = scrambled(hash)) {
+        for (int i = 0; i < tries_of_each_difference;
+             ++i, hash = mixed_bits(hash + split_mix_step)) {
             const glm::u8vec3 color = color_of(hash);
             if (used.accept(color, min_difference)) return color;
         }

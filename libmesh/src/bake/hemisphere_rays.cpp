@@ -28,14 +28,6 @@ constexpr double relative_start = 4e-6;
 /// The minimum cosine between the normal and the face normal for which the normal is used.
 constexpr double min_cosine = 0.1;
 
-/// Returns a hash that decorrelates similar numbers. Source: [Steele et al. 2014].
-std::uint64_t scrambled(std::uint64_t bits) {
-    bits += 0x9e3779b97f4a7c15ULL;
-    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
-    return bits ^ (bits >> 31);
-}
-
 std::uint32_t reversed(std::uint32_t bits) {
     bits = (bits << 16) | (bits >> 16);
     bits = ((bits & 0x00ff00ffU) << 8) | ((bits & 0xff00ff00U) >> 8);
@@ -77,7 +69,7 @@ class Hemisphere {
                        "casts its rays about the normal of its triangle");
         }
         axes_ = axes_about(is_usable ? point.normal : point.face);
-        const std::uint64_t scramble = scrambled(point.texel);
+        const std::uint64_t scramble = mixed_bits(point.texel + split_mix_step);
         first_ = static_cast<std::uint32_t>(scramble >> 32);
         second_ = static_cast<std::uint32_t>(scramble);
     }
@@ -111,30 +103,40 @@ class Hemisphere {
 struct RaySums {
     std::uint32_t cast = 0;
     std::uint32_t blocked = 0;
-    glm::dvec3 directions{0.0};       ///< Of all rays.
-    glm::dvec3 open_directions{0.0};  ///< Of those that hit nothing.
 };
 
-/// Collects rays in packets and adds up the blocked ones and the open directions of each point, in
-/// the order of its rays.
+/// The sums of the directions of the rays of a point.
+struct DirectionSums {
+    glm::dvec3 all{0.0};
+    glm::dvec3 open{0.0};  ///< Of the rays that hit nothing.
+};
+
+/// Collects rays in packets and adds up the blocked ones and the directions of each point, in the
+/// order of its rays.
 class OcclusionPackets {
   public:
-    OcclusionPackets(const RayScene& scene, std::span<RaySums> sums) : scene_(scene), sums_(sums) {}
+    /// \param directions  by point; empty: they are not added up
+    OcclusionPackets(const RayScene& scene, std::span<RaySums> sums,
+                     std::span<DirectionSums> directions)
+        : scene_(scene), sums_(sums), direction_sums_(directions) {}
 
     void add(std::size_t point, const Ray& ray) {
+        ++sums_[point].cast;
         scene_.set(packet_, count_, ray);
-        directions_[count_] = ray.direction;
+        if (!direction_sums_.empty()) {
+            directions_[count_] = ray.direction;
+            direction_sums_[point].all += ray.direction;
+        }
         points_[count_++] = point;
         if (count_ == RayPacket::size) flush();
     }
     void flush() {
         scene_.find_any(packet_, count_);
         for (std::size_t lane = 0; lane < count_; ++lane) {
-            RaySums& sums = sums_[points_[lane]];
             if (packet_.is_blocked(lane))
-                ++sums.blocked;
-            else
-                sums.open_directions += directions_[lane];
+                ++sums_[points_[lane]].blocked;
+            else if (!direction_sums_.empty())
+                direction_sums_[points_[lane]].open += directions_[lane];
         }
         count_ = 0;
     }
@@ -142,6 +144,7 @@ class OcclusionPackets {
   private:
     const RayScene& scene_;
     std::span<RaySums> sums_;
+    std::span<DirectionSums> direction_sums_;
     RayPacket packet_{};
     std::array<glm::dvec3, RayPacket::size> directions_{};
     std::array<std::size_t, RayPacket::size> points_{};
@@ -183,13 +186,14 @@ class DistancePackets {
 /// The mean direction of a cosine distribution is its axis times 2/3. The mean of the rays deviates
 /// from it at random, and where the triangle's plane cuts the hemisphere. Open rays count with the
 /// deviation corrected in proportion to their share.
-glm::dvec3 bent_direction(const RaySums& sums, const glm::dvec3& axis) {
+glm::dvec3 bent_direction(const RaySums& sums, const DirectionSums& directions,
+                          const glm::dvec3& axis) {
     constexpr double mean_cosine = 2.0 / 3.0;
     if (sums.cast == 0) return mean_cosine * axis;
     const auto cast = static_cast<double>(sums.cast);
     const double open = 1.0 - static_cast<double>(sums.blocked) / cast;
     if (sums.blocked == 0) return mean_cosine * axis;
-    return open * mean_cosine * axis + (sums.open_directions - open * sums.directions) / cast;
+    return open * mean_cosine * axis + (directions.open - open * directions.all) / cast;
 }
 
 void check_rays(const char* what, int rays, const std::optional<double>& distance) {
@@ -228,8 +232,9 @@ std::vector<double> Occlusion::open_shares(const RayScene& scene,
                                            std::span<const OcclusionPlace> points, Report& report,
                                            std::span<glm::dvec3> bent) const {
     std::vector<RaySums> sums(points.size());
+    std::vector<DirectionSums> directions(bent.size());
     std::vector<glm::dvec3> axes(bent.size());
-    OcclusionPackets packets(scene, sums);
+    OcclusionPackets packets(scene, sums, directions);
     const double start = relative_start * scene.half_size();
     const double far = distance_.value_or(scene.half_size());
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -238,8 +243,6 @@ std::vector<double> Occlusion::open_shares(const RayScene& scene,
         if (!bent.empty()) axes[i] = hemisphere.axis();
         const glm::dvec3 origin = points[i].position + start * points[i].face;
         hemisphere.for_each([&](const glm::dvec3& direction) {
-            ++sums[i].cast;
-            sums[i].directions += direction;
             packets.add(i, {origin, direction, 0.0, far});
         });
     }
@@ -247,7 +250,7 @@ std::vector<double> Occlusion::open_shares(const RayScene& scene,
     std::vector<double> open(points.size(), 1.0);
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (sums[i].cast > 0) open[i] = 1.0 - static_cast<double>(sums[i].blocked) / sums[i].cast;
-        if (!bent.empty()) bent[i] = bent_direction(sums[i], axes[i]);
+        if (!bent.empty()) bent[i] = bent_direction(sums[i], directions[i], axes[i]);
     }
     return open;
 }

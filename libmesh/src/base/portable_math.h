@@ -216,6 +216,16 @@ bool is_finite(const glm::vec<N, T>& vector) {
     return true;
 }
 
+/// The step of SplitMix64 [Steele et al. 2014] from one state to the next.
+inline constexpr std::uint64_t split_mix_step = 0x9e3779b97f4a7c15ULL;
+
+/// Mixes bits as SplitMix64 does: every bit of the input affects every bit of the result. 0 stays.
+constexpr std::uint64_t mixed_bits(std::uint64_t bits) {
+    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
+    return bits ^ (bits >> 31);
+}
+
 /// A pseudorandom number generator: SplitMix64 [Steele et al. 2014].
 class Random {
   public:
@@ -223,12 +233,8 @@ class Random {
 
     /// Returns a uniformly distributed number in [low, high).
     double between(double low, double high) {
-        state_ += 0x9e3779b97f4a7c15ULL;
-        std::uint64_t bits = state_;
-        bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
-        bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
-        bits ^= bits >> 31;
-        return low + (high - low) * (static_cast<double>(bits >> 11) * 0x1p-53);
+        state_ += split_mix_step;
+        return low + (high - low) * (static_cast<double>(mixed_bits(state_) >> 11) * 0x1p-53);
     }
 
     /// Returns a nearly Gaussian number with mean 0 and standard deviation 1, in [-6, 6]. It is a

@@ -19,6 +19,7 @@
 #include "geometry/weld.h"
 #include "large_memory.h"
 #include "parallel.h"
+#include "portable_math.h"
 #include "progress_stage.h"
 #include "work_array.h"
 
@@ -27,22 +28,15 @@ namespace {
 
 constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
 
-/// Mixes bits as in [Steele et al. 2014]: every bit of the input affects every bit
-/// of the result, so that regular grids of floats do not collide.
-std::uint64_t mixed(std::uint64_t bits) {
-    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
-    return bits ^ (bits >> 31);
-}
-
-/// Returns a hash that is equal for equal keys: adding +0 turns -0 into +0.
+/// Returns a hash that is equal for equal keys: adding +0 turns -0 into +0. Regular grids of floats
+/// do not collide.
 template <std::size_t N>
 std::uint64_t hash_of(const std::array<float, N>& key) {
     std::uint64_t hash = 0;
     for (std::size_t i = 0; i < N; i += 2) {
         const std::uint64_t low = std::bit_cast<std::uint32_t>(key[i] + 0.0F);
         const std::uint64_t high = i + 1 < N ? std::bit_cast<std::uint32_t>(key[i + 1] + 0.0F) : 0U;
-        hash = mixed(hash + (low | high << 32) + 0x9e3779b97f4a7c15ULL);
+        hash = mixed_bits(hash + (low | high << 32) + split_mix_step);
     }
     return hash;
 }
@@ -54,7 +48,7 @@ std::uint64_t hash_of(const std::array<std::uint32_t, N>& key) {
     for (std::size_t i = 0; i < N; i += 2) {
         const std::uint64_t low = key[i];
         const std::uint64_t high = i + 1 < N ? key[i + 1] : 0U;
-        hash = mixed(hash + (low | high << 32) + 0x9e3779b97f4a7c15ULL);
+        hash = mixed_bits(hash + (low | high << 32) + split_mix_step);
     }
     return hash;
 }
@@ -135,7 +129,7 @@ std::vector<std::uint32_t> weld(std::size_t count, const KeyOf& key_of) {
     const Buckets buckets(count, [&](std::size_t i) {
         const auto key = key_of(i);
         // A NaN equals no other value; a hash of the index avoids collisions.
-        return static_cast<std::uint32_t>(key == key ? hash_of(key) : mixed(i + 1));
+        return static_cast<std::uint32_t>(key == key ? hash_of(key) : mixed_bits(i + 1));
     });
     std::vector<std::uint32_t> representatives(count);
     std::iota(representatives.begin(), representatives.end(), 0U);
