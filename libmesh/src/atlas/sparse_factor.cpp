@@ -243,7 +243,7 @@ void SparseFactor::factor(std::span<const double> diagonal, const Neighbors& nei
     std::vector<std::uint32_t> seen(diagonal.size(), std::numeric_limits<std::uint32_t>::max());
     std::vector<std::uint32_t> index(diagonal.size());  // In the matrix of the present node.
     std::vector<double> matrix;
-    // What is left of nodes until their parent adds it: square matrices, the last one at the end.
+    // The remainders of nodes, square matrices, which their parents add; the latest is at the end.
     std::vector<double> left;
     std::vector<std::uint32_t> roots;  // Nodes without a parent so far.
     for (std::uint32_t number = 0; number < nodes_.size(); ++number) {

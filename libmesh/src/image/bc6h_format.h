@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What the search for encodings of BC6H and their storage share: its modes, and the stored numbers
-/// of a block. Source: [Khronos Data Format], section BPTC.
+/// The modes of BC6H and the stored numbers of a block, for the search for encodings and for their
+/// storage. Source: [Khronos Data Format], section BPTC.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What the search for encodings of BC7 and their storage share: the stored numbers of a block.
+/// The stored numbers of a block of BC7, for the search for encodings and for their storage.
 /// Source: [Khronos Data Format], section BPTC.
 #pragma once
 

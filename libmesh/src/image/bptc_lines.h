@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What the searches for encodings of BC6H and BC7 share: the colors of a subset of texels lie on a
-/// line, which is fitted to exact colors, and texels are divided by one of 64 partitions. 32 blocks
-/// are processed at once, one per vector lane. Source: [Khronos Data Format], section BPTC.
+/// Lines through colors and partitions, for the searches for encodings of BC6H and BC7: the colors
+/// of a subset of texels lie on a line, which is fitted to exact colors, and one of 64 partitions
+/// divides the texels. 32 blocks are processed at once, one per vector lane.
+/// Source: [Khronos Data Format], section BPTC.
 #pragma once
 
 #include <cstddef>

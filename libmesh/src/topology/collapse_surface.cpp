@@ -33,6 +33,7 @@ CollapseSurface::CollapseSurface(CollapseInput& input) {
             corner_of_[vertex] = corner;
         }
     }
+    // Positions that are fitted at the end are compared with the surface.
     if (!input.fits_positions) free_memory(topology.triangles);
     free_memory(topology.opposite);
     free_memory(input.wedges);

@@ -753,9 +753,7 @@ void Collapser::shorten_far_moves(std::vector<Fit>& fits) const {
         long_moves.push_back(i);
         balls.push_back({input_.point(fit.vertex) + fit.offset, limit});
     }
-    const std::vector<bool> touch =
-        touch_surface(balls, input_.topology.triangles,
-                      [&](std::uint32_t vertex) { return input_.point(vertex); });
+    const std::vector<bool> touch = touch_surface(balls, input_);
     for (std::size_t i = 0; i < balls.size(); ++i) {
         glm::dvec3& offset = fits[long_moves[i]].offset;
         if (!touch[i]) offset *= balls[i].radius / glm::length(offset);
