@@ -149,11 +149,11 @@ TEST(BakeAccuracy, SeparatesSamplingFromRoundingUpTo256Samples) {
 }
 
 constexpr int stacks = 100;
-constexpr int side = 96;
+constexpr int map_side = 96;
 
 /// Bakes a map with a number of rays per texel; returns unit normals in object space.
 Image baked(const BumpyBake& bake, int samples) {
-    Image normals = make_image(side, side, 3, 32, ColorSpace::data);
+    Image normals = make_image(map_side, map_side, 3, 32, ColorSpace::data);
     BakeMapOptions map = bake.map();
     map.samples = samples;
     Report report;
@@ -161,7 +161,7 @@ Image baked(const BumpyBake& bake, int samples) {
         map,
         [&](const BakedRows& rows) {
             std::copy(rows.normals.begin(), rows.normals.end(),
-                      normals.as<float>().begin() + std::ptrdiff_t{3} * side * rows.first_row);
+                      normals.as<float>().begin() + std::ptrdiff_t{3} * map_side * rows.first_row);
         },
         report);
     return object_from_tangent(normals, bake.baker().low(), {}, report).normals;
@@ -172,7 +172,7 @@ std::vector<test::TexelReference> references(const BumpyBake& bake) {
     Mesh rays = bake.baker().low();  // Rays run along smoothed normals.
     rays.normals = vertex_normals(rays.positions, rays.triangles, NormalWeight::angle, report);
     return test::texel_references(BumpySphere(stacks), rays,
-                                  {BumpyBake::low_slices, BumpyBake::low_stacks}, side);
+                                  {BumpyBake::low_slices, BumpyBake::low_stacks}, map_side);
 }
 
 /// The RMS angle between a map and the formula, in degrees. Can negate x to simulate a defect.
@@ -225,7 +225,7 @@ double rms_between(const Image& a, const Image& b) {
 
 TEST_LABELS(not_sanitized);
 TEST(BakeTruth, ManyRaysConvergeToTheFormula) {
-    const BumpyBake bake(stacks, side);
+    const BumpyBake bake(stacks, map_side);
     const std::vector<test::TexelReference> all = references(bake);
     ASSERT_GT(all.size(), 150U);
     const Image many = baked(bake, 256);

@@ -166,7 +166,7 @@ TEST(NormalCodes, HalvesHaveTheErrorsOfTheFilesThatAreWritten) {
 }
 
 /// Rounding to float: 2^-24 of a component, 3.4e-6 degrees each.
-constexpr double rounding = 1e-5;
+constexpr double float_rounding = 1e-5;
 
 /// Frames that are rotated about their normals.
 Frames turned(const SampleFrames& ground_truth, double degrees) {
@@ -202,16 +202,16 @@ TEST(SampleFrames, EvenOnesAreFramesSpreadEvenly) {
 
 TEST(FrameErrors, RotatedFramesHaveTheAngleOfRotation) {
     const SampleFrames ground_truth = even_frames(500);
-    EXPECT_LE(frame_errors(ground_truth, turned(ground_truth, 0.0)).both.max, rounding);
+    EXPECT_LE(frame_errors(ground_truth, turned(ground_truth, 0.0)).both.max, float_rounding);
     const FrameCodeErrors errors = frame_errors(ground_truth, turned(ground_truth, 1.0));
-    EXPECT_LE(errors.normal.max, rounding);
-    EXPECT_NEAR(errors.tangent.rms, 1.0, rounding);
-    EXPECT_NEAR(errors.tangent.max, 1.0, rounding);
-    EXPECT_NEAR(errors.both.rms, std::sqrt(0.5), rounding);
+    EXPECT_LE(errors.normal.max, float_rounding);
+    EXPECT_NEAR(errors.tangent.rms, 1.0, float_rounding);
+    EXPECT_NEAR(errors.tangent.max, 1.0, float_rounding);
+    EXPECT_NEAR(errors.both.rms, std::sqrt(0.5), float_rounding);
     // A direction at 30 degrees to the axis moves on a circle of half the radius.
     const double half = std::numbers::pi / 360.0;
     const double texel = 2.0 * std::asin(0.5 * std::sin(half)) * 180.0 / std::numbers::pi;
-    EXPECT_NEAR(errors.texel.rms, texel, rounding);
+    EXPECT_NEAR(errors.texel.rms, texel, float_rounding);
     EXPECT_EQ(errors.flipped_frames, 0U);
 }
 

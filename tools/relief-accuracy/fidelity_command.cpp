@@ -162,11 +162,11 @@ std::vector<std::string> stage_lines(const MeasuredStage& stage, const MeasuredC
     return lines;
 }
 
-Json json_of(const WorstView& worst) {
+Json worst_json(const WorstView& worst) {
     return {{"view", worst.view}, {"value", worst.value}};
 }
 
-Json json_of(const DistanceStats& stats) {
+Json distances_json(const DistanceStats& stats) {
     return {{"mean", stats.mean},
             {"rms", stats.rms},
             {"p95", stats.p95},
@@ -174,14 +174,14 @@ Json json_of(const DistanceStats& stats) {
             {"samples", stats.samples}};
 }
 
-Json json_of(const MeasuredStage& stage) {
+Json stage_json(const MeasuredStage& stage) {
     const Fidelity& loss = stage.loss;
     Json pictures = Json::object();
     for (std::size_t i = 0; i < fidelity_light_count; ++i) {
         const PictureLoss& one = loss.pictures[i];
         pictures[enum_name(static_cast<FidelityLight>(i))] = {{"mean", one.mean},
                                                               {"p95", one.p95},
-                                                              {"worst", json_of(one.worst)},
+                                                              {"worst", worst_json(one.worst)},
                                                               {"floor", one.floor}};
     }
     Json views = Json::array();
@@ -203,16 +203,16 @@ Json json_of(const MeasuredStage& stage) {
               {"p95", loss.normals.p95},
               {"p99", loss.normals.p99},
               {"max", loss.normals.max},
-              {"worst", json_of(loss.normals.worst)},
+              {"worst", worst_json(loss.normals.worst)},
               {"floor", loss.normals.floor},
               {"pixels", loss.normals.pixels},
               {"undefined", loss.normals.undefined}}},
             {"silhouettes",
              {{"width", loss.silhouettes.width},
-              {"worst", json_of(loss.silhouettes.worst)},
+              {"worst", worst_json(loss.silhouettes.worst)},
               {"floor", loss.silhouettes.floor}}},
-            {"distance_from_source", json_of(stage.distance.from_a)},
-            {"distance_to_source", json_of(stage.distance.from_b)},
+            {"distance_from_source", distances_json(stage.distance.from_a)},
+            {"distance_to_source", distances_json(stage.distance.from_b)},
             {"views", views}};
 }
 
@@ -243,7 +243,7 @@ Summary summary_of(const FidelityRequest& request, const MeasuredChain& chain) {
         summary.add("", stage_lines(stage, chain));
     }
     summary.add_json(
-        {{"stages", json_list(chain.stages, [](const auto& stage) { return json_of(stage); })},
+        {{"stages", json_list(chain.stages, [](const auto& stage) { return stage_json(stage); })},
          {"max_error", or_null(request.max_error.degrees)},
          {"max_error_kind", enum_name(request.max_error.statistic())},
          {"max_picture_error", or_null(request.max_flip)}});

@@ -13,15 +13,18 @@
 
 #include "image/bc6h_format.h"
 #include "image/half_float.h"
+#include "mesh/image/block_fields.h"
 #include "relief/mesh/block_compression.h"
-#include "relief/mesh/execution.h"
 #include "support/images.h"
 #include "support/invariants.h"
-#include "support/vector_bits.h"
 
 namespace relief {
 namespace {
 
+using test::all_qualities;
+using test::Bits;
+using test::block_of;
+using test::Blocks;
 using test::image_of;
 using test::message_of;
 using test::samples_of;
@@ -29,16 +32,7 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr BlockQuality all_qualities[] = {BlockQuality::fast, BlockQuality::normal,
-                                          BlockQuality::best};
 constexpr BlockFormat both_formats[] = {BlockFormat::bc6h, BlockFormat::bc6h_sfloat};
-
-using Blocks = std::vector<std::byte>;
-
-/// A number of `count` bits.
-struct Bits {
-    unsigned value, count;
-};
 
 // Decoding.
 
@@ -184,7 +178,7 @@ const std::vector<ModeBlock> mode_blocks = {
 
 /// Texels 1 and 9 have the largest index, and all others 0. Partition 13 is the upper and the
 /// lower half.
-Blocks block_of(const ModeBlock& mode) {
+Blocks block_of_mode(const ModeBlock& mode) {
     std::vector<Bits> fields = {mode.selector};
     fields.insert(fields.end(), mode.ends.begin(), mode.ends.end());
     if (mode.subsets == 2) fields.push_back({13, 5});
@@ -193,14 +187,8 @@ Blocks block_of(const ModeBlock& mode) {
         const unsigned count = (mode.subsets == 2 ? 3U : 4U) - (is_anchor ? 1U : 0U);
         fields.push_back({t % 8 == 1 ? (1U << count) - 1 : 0, count});
     }
-    Blocks block(16);
-    unsigned next = 0;
-    for (const Bits& field : fields) {
-        for (unsigned i = 0; i < field.count; ++i, ++next)
-            block[next / 8] |= static_cast<std::byte>((field.value >> i & 1U) << (next % 8));
-    }
-    EXPECT_EQ(next, 128U) << mode.number;
-    return block;
+    SCOPED_TRACE(mode.number);
+    return block_of(16, fields);
 }
 
 /// The half float that a stored endpoint stands for: the middle of its step, except for 0 and the
@@ -222,7 +210,8 @@ float value_of_end(int end, int bits, bool is_signed) {
 TEST(Bc6hDecoder, EveryModeHasTheStatedEndpoints) {
     for (const ModeBlock& mode : mode_blocks) {
         for (const BlockFormat format : both_formats) {
-            const auto samples = samples_of<float>(decode_blocks(block_of(mode), format, 4, 4));
+            const auto samples =
+                samples_of<float>(decode_blocks(block_of_mode(mode), format, 4, 4));
             const bool has_sign = format == BlockFormat::bc6h_sfloat;
             // The texels of the endpoints.
             constexpr std::array<std::size_t, 4> texels = {0, 1, 8, 9};
@@ -243,7 +232,7 @@ TEST(Bc6hDecoder, EveryModeHasTheStatedEndpoints) {
 TEST(Bc6hDecoder, ValuesBetweenEndpointsAreLinearInCodes) {
     // Mode 11 from 0 to 1023: codes 0 and 65535. Index 5 of 16 has the weight 21 of 64:
     // (21 * 65535 + 32) / 64 = 21504, and 21504 * 31 / 64 = 10416 = 0x28B0: (1 + 176/1024) * 2^-5.
-    Blocks block = block_of(
+    Blocks block = block_of_mode(
         {11, {3, 5}, 10, 1, {{0, 10}, {0, 10}, {0, 10}, {1023, 10}, {1023, 10}, {1023, 10}}});
     block[8] = std::byte{0x05 << 4};  // Bits 68 to 71: texel 1.
     const auto samples = samples_of<float>(decode_blocks(block, BlockFormat::bc6h, 4, 4));
@@ -496,12 +485,11 @@ TEST(Bc6hEncoder, RefusesOtherChannels) {
                 HasSubstr("bc6h has 1 or 3 channels, not 2"));
 }
 
-std::uint64_t fingerprint() {
+std::uint64_t bc6h_fingerprint() {
     std::uint64_t hash = 1469598103934665603ULL;
     for (const BlockQuality quality : all_qualities) {
         for (const BlockFormat format : both_formats) {
-            for (const std::byte byte : encode_blocks(hdr_colors(true), format, quality))
-                hash = (hash ^ std::to_integer<std::uint64_t>(byte)) * 1099511628211ULL;
+            hash = test::hash_after(hash, encode_blocks(hdr_colors(true), format, quality));
         }
     }
     return hash;
@@ -509,14 +497,7 @@ std::uint64_t fingerprint() {
 
 TEST(Bc6hEncoder, TheBytesAreTheSameForAnyThreadsProcessorAndCompiler) {
     constexpr std::uint64_t expected = 1828898568621155053ULL;
-    EXPECT_EQ(fingerprint(), expected);
-    for (const char* bits : {"128", "256"}) {
-        const test::VectorBits width(bits);
-        EXPECT_EQ(fingerprint(), expected) << bits;
-    }
-    set_thread_limit(1);
-    EXPECT_EQ(fingerprint(), expected);
-    set_thread_limit(0);
+    test::expect_everywhere(bc6h_fingerprint, expected);
 }
 
 }  // namespace

@@ -15,15 +15,18 @@
 #include <utility>
 
 #include "image/bc7_format.h"
-#include "relief/mesh/execution.h"
+#include "mesh/image/block_fields.h"
 #include "relief/mesh/normal_map.h"
 #include "support/images.h"
 #include "support/invariants.h"
-#include "support/vector_bits.h"
 
 namespace relief {
 namespace {
 
+using test::all_qualities;
+using test::Bits;
+using test::block_of;
+using test::Blocks;
 using test::image_of;
 using test::message_of;
 using test::samples_of;
@@ -31,28 +34,7 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::ElementsAreArray;
 
-constexpr BlockQuality all_qualities[] = {BlockQuality::fast, BlockQuality::normal,
-                                          BlockQuality::best};
 constexpr float quiet_nan = std::numeric_limits<float>::quiet_NaN();
-
-using Blocks = std::vector<std::byte>;
-
-/// A number of `count` bits.
-struct Bits {
-    unsigned value, count;
-};
-
-/// A block of these numbers, lowest bits first.
-Blocks block_of(std::size_t size, const std::vector<Bits>& fields) {
-    Blocks block(size);
-    unsigned next = 0;
-    for (const Bits& field : fields) {
-        for (unsigned i = 0; i < field.count; ++i, ++next)
-            block[next / 8] |= static_cast<std::byte>((field.value >> i & 1U) << (next % 8));
-    }
-    EXPECT_EQ(next, 8 * size);
-    return block;
-}
 
 /// A block of BC4 whose texels have the indices 0 to 7 twice.
 Blocks bc4_block(unsigned first, unsigned second) {
@@ -376,7 +358,7 @@ TEST(NormalBlocks, OddNormalsAreCountedAndStoredAsStated) {
 }
 
 /// Bytes of all formats and qualities for integer data: a number of 64 bits.
-std::uint64_t fingerprint() {
+std::uint64_t integer_fingerprint() {
     Image codes = make_image(71, 9, 2, 16, ColorSpace::data);
     std::uint32_t state = 1;
     for (std::size_t i = 0; i < codes.sample_count(); ++i) {
@@ -390,10 +372,7 @@ std::uint64_t fingerprint() {
         colors.as<std::uint16_t>()[i] =
             codes.as<std::uint16_t>()[(i / 2 + i % 2) % codes.sample_count()];
     std::uint64_t hash = 14695981039346656037ULL;
-    const auto add = [&](const Blocks& blocks) {
-        for (const std::byte byte : blocks)
-            hash = (hash ^ std::to_integer<std::uint64_t>(byte)) * 1099511628211ULL;
-    };
+    const auto add = [&](const Blocks& blocks) { hash = test::hash_after(hash, blocks); };
     for (const BlockQuality quality : all_qualities) {
         for (const BlockFormat format : {BlockFormat::bc5, BlockFormat::bc5_snorm}) {
             add(encode_blocks(codes, format, quality));
@@ -406,14 +385,7 @@ std::uint64_t fingerprint() {
 
 TEST(BlockEncoder, TheBytesAreTheSameForAnyThreadsProcessorAndCompiler) {
     constexpr std::uint64_t expected = 1608099463192973029ULL;
-    EXPECT_EQ(fingerprint(), expected);
-    for (const char* bits : {"128", "256"}) {
-        const test::VectorBits width(bits);
-        EXPECT_EQ(fingerprint(), expected) << bits;
-    }
-    set_thread_limit(1);
-    EXPECT_EQ(fingerprint(), expected);
-    set_thread_limit(0);
+    test::expect_everywhere(integer_fingerprint, expected);
 }
 
 // BC7.
