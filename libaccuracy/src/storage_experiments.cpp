@@ -569,7 +569,7 @@ std::vector<glm::dvec3> compressed_waves(int side, double shortest, double offse
     return wave_heights(side, side, waves).normals;
 }
 
-/// Of other codes, shaders rebuild z after filtering.
+/// Returns whether a code stores z. Shaders compute z of the others after filtering.
 bool has_z(const NormalCode& code) {
     return !code.name.starts_with("xy ") && !code.name.starts_with("bc5");
 }

@@ -277,8 +277,8 @@ class MapBaker {
     [[nodiscard]] Baker baker_of_parts(BakeOptions options, Report& report);
     [[nodiscard]] glm::ivec2 hemisphere_size() const;
     void set_factors();
-    void add_layers(const Baker& baker);
-    void bake_surface(const Baker& baker, Report& report);
+    void add_layers(const Baker& baker, const LayerBounds& bounds);
+    void bake_surface(const Baker& baker, const LayerBounds& bounds, Report& report);
     [[nodiscard]] std::optional<Image> bake_hemispheres(const Baker& baker, Report& report);
     void store_colors(LayerMap& map, Report& report);
     void store_surface(LayerMap& map, std::optional<Image> occlusion);
@@ -360,8 +360,7 @@ void MapBaker::set_factors() {
 }
 
 /// Adds the further layers.
-void MapBaker::add_layers(const Baker& baker) {
-    const LayerBounds bounds = baker.bounds(baker.options().map.layers);
+void MapBaker::add_layers(const Baker& baker, const LayerBounds& bounds) {
     for (const LayerKind kind : options_.layers) {
         LayerCoding coding{kind, kind == LayerKind::id ? 8 : 16, range_of(kind, bounds)};
         if (kind == LayerKind::id) coding.ids = baker.ids();
@@ -374,13 +373,12 @@ glm::ivec2 MapBaker::hemisphere_size() const {
 }
 
 /// Bakes all layers without rays into hemispheres.
-void MapBaker::bake_surface(const Baker& baker, Report& report) {
+void MapBaker::bake_surface(const Baker& baker, const LayerBounds& bounds, Report& report) {
     BakeMapOptions map = baker.options().map;
     map.layers.occlusion.reset();
     map.layers.bent_normals.reset();
     map.layers.thickness.reset();
     map.measures_missed = true;
-    const LayerBounds bounds = baker.bounds(map.layers);
     const glm::ivec2& size = options_.size;
     std::vector<LayerMap*> maps;
     const auto add = [&](std::unique_ptr<LayerMap>& target, LayerKind kind, double range,
@@ -525,8 +523,9 @@ void MapBaker::bake(Report& report) {
                             : Baker(std::span(&high_, 1), asset_.mesh, bake_options(), report);
     asset_.agreement = baker.agreement();
     set_factors();
-    add_layers(baker);
-    bake_surface(baker, report);
+    const LayerBounds bounds = baker.bounds(baker.options().map.layers);
+    add_layers(baker, bounds);
+    bake_surface(baker, bounds, report);
     if (asset_.bake.texels_baked == 0)
         throw InvalidInput("no texel of the maps was baked: no ray hits the source");
     std::optional<Image> occlusion = bake_hemispheres(baker, report);

@@ -107,7 +107,8 @@ struct Tolerances {
     double degrees = 0.0;
     double length = 1e-12;   ///< Of heights, curvatures and positions.
     double occlusion = 0.0;  ///< Of the share of rays.
-    /// Of the components of bent normals; a ray of 16 turns one by any angle if few are open.
+    /// Of the components of bent normals. If few of 16 rays are open, one ray more can turn the mean
+    /// by any angle.
     double bent = 1e-15;
     double thickness = 1e-12;
     /// The share of texels beyond these limits: rays that meet an edge may hit its other triangle.

@@ -81,7 +81,7 @@ struct AssetOptions {
     Remeshing remesh = Remeshing::automatic;
     int resolution = 256;  ///< Of the grid (RemeshOptions::resolution).
     bool shell = false;    ///< Sheets become shells (RemeshOptions::shell).
-    /// What is solid (RemeshOptions::sign).
+    /// Decides which side of the triangles is solid (RemeshOptions::sign).
     RemeshSign sign = RemeshSign::flood;
     /// Leaves out the stages before a stage, but "repair". Maps still show the source.
     std::optional<AssetStart> start{};
@@ -154,8 +154,8 @@ struct AssetPart {
     std::size_t triangles = 0;
 };
 
-/// Whether the rays of each part of an asset hit only the part of the source of the same name.
-/// Rays of occlusion hit all parts.
+/// The decision whether the rays of each part of an asset hit only the part of the source with the
+/// same name. Rays of occlusion hit all parts.
 struct PartDecision {
     bool is_matched = false;
     /// Why parts are not matched; empty if they are, or if the source has one part.

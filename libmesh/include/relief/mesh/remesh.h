@@ -14,7 +14,7 @@
 
 namespace RELIEF_API relief {
 
-/// What decides which side of the triangles is solid.
+/// The rule that decides which side of the triangles is solid.
 enum class RemeshSign {
     flood,  ///< All that cannot be reached from outside, through gaps of a cell or more, is solid.
     winding,  ///< All with an absolute winding number of at least a half is solid.
