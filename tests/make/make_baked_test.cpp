@@ -89,7 +89,7 @@ TEST_F(BakedAsset, IsTheSameIfNoMapWasEdited) {
          {"normal", "color", "orm", "emission", "height", "bent", "thickness", "ids"})
         ASSERT_TRUE(std::filesystem::exists(map(name))) << name;
     std::map<std::string, std::string> beside;
-    for (const char* name : {"MaskMap", "height", "bent", "thickness", "ids"}) {
+    for (const char* name : {"MaskMap", "Height", "bent", "thickness", "ids"}) {
         const std::string file = std::string("out/a_") + name + ".png";
         beside[file] = workplace.read(file);
         ASSERT_FALSE(beside[file].empty()) << file;

@@ -46,7 +46,7 @@ TEST(TouchedSurface, IsThatOfTheNearestTriangle) {
         }
         if (count == 300) {
             const auto touched = std::count(touch.begin(), touch.end(), true);
-            EXPECT_GT(touched, 100);
+            EXPECT_GT(touched, 50);
             EXPECT_LT(touched, 400);
         }
     }
