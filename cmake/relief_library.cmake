@@ -149,9 +149,7 @@ function(relief_add_library component folder)
         ${interface} ${needed}
         PRIVATE $<BUILD_INTERFACE:relief_flags> ${RELIEF_FMT} ${ARG_PRIVATE})
     relief_precompile(${target} LIKE relief_precompiled)
-    if(NOT component STREQUAL mesh)  # Its files are small, and repeat names.
-        relief_batch(${target} 5)
-    endif()
+    relief_batch(${target} 5)
     relief_hide_third_parties(${target})
     if(RELIEF_INSTALL)
         install(

@@ -120,10 +120,10 @@ struct Published {
 TEST(NormalCodes, ErrAsPublished) {
     // Measured by another program on random directions. The largest errors depend on the
     // directions, and if z is computed from x and y, on their distance from the horizon.
-    constexpr int side = 512;
-    std::vector<glm::dvec3> directions = even_directions(2 * side * side);
+    constexpr int sheet_side = 512;
+    std::vector<glm::dvec3> directions = even_directions(2 * sheet_side * side);
     directions.resize(directions.size() / 2);
-    const Image normals = image_of_normals(directions, side);
+    const Image normals = image_of_normals(directions, sheet_side);
     for (const Published& row : {Published{"xyz 8 bit", 0.170, 0.386},
                                  {"xyz 16 bit", 0.0007, 0.0015},
 

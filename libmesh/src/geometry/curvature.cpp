@@ -18,7 +18,7 @@ using namespace relief::detail;
 
 namespace {
 
-constexpr std::size_t grain = 1 << 14;
+constexpr std::size_t piece_size = 1 << 14;
 
 /// A triangle seen from one of its corners: the other two vertices, counter-clockwise.
 struct Spoke {
@@ -154,7 +154,7 @@ std::optional<double> mean_around(std::span<const Spoke> sorted, const std::vect
 
 void count_flat_triangles(std::span<const glm::vec3> positions,
                           std::span<const glm::uvec3> triangles, Report& report) {
-    parallel_for_reporting(triangles.size(), grain, report,
+    parallel_for_reporting(triangles.size(), piece_size, report,
                            [&](std::size_t begin, std::size_t end, Report& found) {
                                for (std::size_t i = begin; i < end; ++i) {
                                    const glm::dvec3 a(positions[triangles[i].x]);
@@ -178,7 +178,7 @@ std::vector<float> mean_curvatures(std::span<const glm::vec3> positions,
     std::vector<float> values(positions.size(), 0.0F);
     std::vector<RingKind> kinds(positions.size(), RingKind::none);
     const auto each = [&](const auto& work) {
-        parallel_for_reporting(positions.size(), grain, report,
+        parallel_for_reporting(positions.size(), piece_size, report,
                                [&](std::size_t begin, std::size_t end, Report& found) {
                                    std::vector<std::uint32_t> scratch;
                                    for (std::size_t i = begin; i < end; ++i) {

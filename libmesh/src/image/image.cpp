@@ -29,7 +29,7 @@ using namespace relief::detail;
 
 namespace {
 
-constexpr std::size_t samples_per_piece = 1 << 14;
+constexpr std::size_t converted_per_piece = 1 << 14;
 
 // The constants are those of the standard. The two branches differ by 1e-7 at the code 0.04045
 // (light 0.0031308), which no 16-bit code resolves.
@@ -90,7 +90,7 @@ std::vector<To> converted(const Image& image, const std::vector<From>& from, Col
     std::vector<To> to(from.size());
     const auto channels = static_cast<std::size_t>(image.channels);
     const std::size_t alpha_channel = has_alpha(image) ? channels - 1 : channels;
-    parallel_for(from.size(), samples_per_piece, [&](std::size_t begin, std::size_t end) {
+    parallel_for(from.size(), converted_per_piece, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             to[i] = i % channels == alpha_channel ? alpha(from[i]) : color(from[i]);
     });

@@ -45,7 +45,7 @@ struct NearPair {
 };
 
 constexpr std::size_t requests_per_piece = 1024;
-constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t no_triangle = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t max_in_cell = 256;
 constexpr double radii_in_a_cell = 8.0;
 // Few triangles remain after three rounds, except in clusters.
@@ -80,8 +80,8 @@ class CentroidGrid {
   public:
     CentroidGrid(const Mesh& mesh, std::span<const std::uint32_t> triangles, double cell_size)
         : cell_size_(cell_size),
-          heads_(std::bit_ceil(2 * triangles.size() + 1), none),
-          next_(triangles.size(), none),
+          heads_(std::bit_ceil(2 * triangles.size() + 1), no_triangle),
+          next_(triangles.size(), no_triangle),
           hashes_(triangles.size()) {
         std::vector<std::uint32_t> sizes(heads_.size(), 0);
         for (std::size_t i = triangles.size(); i-- > 0;) {
@@ -121,7 +121,7 @@ class CentroidGrid {
     template <typename Visit>
     void visit_cell(std::size_t hash, const Visit& visit) const {
         std::size_t seen = 0;
-        for (std::uint32_t i = heads_[slot(hash)]; i != none; i = next_[i]) {
+        for (std::uint32_t i = heads_[slot(hash)]; i != no_triangle; i = next_[i]) {
             if (hashes_[i] != hash) continue;
             visit(i);
             if (++seen == max_in_cell) return;
@@ -157,7 +157,7 @@ double nominal_cost(const Mesh& a, const glm::uvec3& ta, const Mesh& b, const gl
 
 /// Request of a triangle of b.
 struct MethodRequest {
-    std::uint32_t a = none;  ///< Index into the remaining triangles of a.
+    std::uint32_t a = no_triangle;  ///< Index into the remaining triangles of a.
     int turn = 0;
     double cost = std::numeric_limits<double>::infinity();
     std::uint32_t choices = 0;
@@ -238,16 +238,16 @@ class NearPairing {
             for (std::size_t i = begin; i < end; ++i)
                 requests[i] = request_of(left_b_[asking[i]]);
         });
-        std::vector<std::uint32_t> nearest(left_a_.size(), none);
+        std::vector<std::uint32_t> nearest(left_a_.size(), no_triangle);
         for (std::uint32_t i = 0; i < requests.size(); ++i) {
-            if (requests[i].a == none) continue;
+            if (requests[i].a == no_triangle) continue;
             std::uint32_t& first = nearest[requests[i].a];
-            if (first == none || requests[i].cost < requests[first].cost) first = i;
+            if (first == no_triangle || requests[i].cost < requests[first].cost) first = i;
         }
         std::vector<std::uint32_t> again;
         for (std::uint32_t i = 0; i < requests.size(); ++i) {
             const MethodRequest& request = requests[i];
-            if (request.a == none) continue;
+            if (request.a == no_triangle) continue;
             if (nearest[request.a] != i) {
                 again.push_back(asking[i]);
                 continue;
