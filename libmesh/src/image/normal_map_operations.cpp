@@ -56,6 +56,7 @@ RowLengths lengths_of_row(const Image& map, const SampleDecoder<Sample>& decoded
     const UnitVectorFunctions functions = unit_vector_functions();
     const Sample* sample = map.as<Sample>().data() + row * width * stride;
     RowLengths result;
+    std::vector<std::size_t> odd;  // Often all texels; the report gets them at once.
     VectorGroup group;
     VectorNumbers lengths;
     for (std::size_t first = 0; first < width; first += vectors_per_group) {
@@ -68,10 +69,7 @@ RowLengths lengths_of_row(const Image& map, const SampleDecoder<Sample>& decoded
         functions.lengths(group, lengths);
         for (std::size_t i = 0; i < count; ++i) {
             const double length = lengths[i];
-            if (!(std::abs(length - 1.0) <= tolerance)) {
-                found.add("normal not of unit length", "texel", row * width + first + i,
-                          "scaled to length 1");
-            }
+            if (!(std::abs(length - 1.0) <= tolerance)) odd.push_back(row * width + first + i);
             if (!std::isfinite(length)) continue;
             result.min = std::min(result.min, length);
             result.max = std::max(result.max, length);
@@ -79,6 +77,8 @@ RowLengths lengths_of_row(const Image& map, const SampleDecoder<Sample>& decoded
             ++result.count;
         }
     }
+    if (!odd.empty())
+        found.add({"normal not of unit length", "texel", "scaled to length 1", odd.size(), odd});
     return result;
 }
 
