@@ -345,43 +345,6 @@ void Maker::begin(const AssetStart& start) {
     }
 }
 
-/// Returns whether a decimation came to the limits that keep the shape of small parts.
-bool is_limited_by_parts(const Report& report) {
-    return report.count("number of triangles out of reach") > 0 ||
-           report.count("small parts lose their shape") > 0;
-}
-
-/// Decimates in steps. Each step ends with moving the vertices to where they fit best, and the next
-/// one chooses among them: the root mean square distance is 6 to 36 % smaller than with one step.
-/// Where small parts are the limit there is one step, because their errors would add up.
-Mesh decimated_in_steps(const Mesh& source, DecimateOptions limits, Report& report) {
-    // In tenths of the requested triangles.
-    constexpr std::array<std::size_t, 4> tenths = {80, 40, 20, 14};
-    const std::size_t triangles = *limits.triangles;
-    const Mesh* surface = &source;
-    Mesh coarser;
-    Report of_source, found;
-    for (const std::size_t factor : tenths) {
-        if (triangles >= surface->triangles.size()) break;
-        const std::size_t count = factor * triangles / 10;
-        // A smaller step is not worth its time.
-        if (surface->triangles.size() < count + count / 4) continue;
-        limits.triangles = count;
-        found = {};
-        coarser = decimated(*surface, limits, found).mesh;
-        if (is_limited_by_parts(found)) break;
-        if (surface == &source) of_source = found;
-        surface = &coarser;
-    }
-    limits.triangles = triangles;
-    if (surface == &source) return decimated(source, limits, report).mesh;
-    Mesh result;
-    if (!is_limited_by_parts(found)) result = decimated(*surface, limits, found = {}).mesh;
-    if (is_limited_by_parts(found)) return decimated(source, limits, report).mesh;
-    report.merge(of_source);
-    return result;
-}
-
 void Maker::decimate(Report& report) {
     Mesh surface;
     const Mesh& dense = dense_surface();
@@ -406,7 +369,7 @@ void Maker::decimate(Report& report) {
     limits.fit_positions = true;
     limits.frames.normals = NormalWeight::angle;
     limits.frames.tangents = TangentMethod::none;
-    asset_.mesh = decimated_in_steps(surface, limits, report);
+    asset_.mesh = decimated(surface, limits, report).mesh;
     if (asset_.mesh.triangles.empty()) throw InvalidInput("no triangle is left after decimation");
     low_parts_.clear();
     if (!parts.empty()) low_parts_ = detail::parts_of_ranges(asset_.mesh);

@@ -91,6 +91,26 @@ void CollapseError::add_lines(std::size_t triangle) {
     }
 }
 
+void CollapseError::forget_planes() {
+    // Without attributes, no ring is needed.
+    Ring ring;
+    for (std::uint32_t v = 0; v < quadrics_.size(); ++v) {
+        if (sums_per_wedge_ == 0)
+            errors_[v] = std::max(0.0, quadrics_[v](input_.point(v)));
+        else if (!surface_.is_removed(v) && surface_.find_ring(v, ring))
+            errors_[v] = std::max(0.0, local(v, ring).value);
+        errors_[v] = areas_[v] > 0.0 ? errors_[v] / areas_[v] : 0.0;
+    }
+    std::fill(quadrics_.begin(), quadrics_.end(), Quadric());
+    std::fill(areas_.begin(), areas_.end(), 0.0);
+    std::fill(attribute_sums_.begin(), attribute_sums_.end(), 0.0);
+}
+
+void CollapseError::spread_errors() {
+    for (std::uint32_t v = 0; v < errors_.size(); ++v)
+        errors_[v] *= areas_[v];
+}
+
 void CollapseError::merge(std::uint32_t vertex, const Move& move) {
     errors_[move.target] += std::max(0.0, own_cost(vertex, move));
     quadrics_[move.target] += quadrics_[vertex];
@@ -107,23 +127,13 @@ void CollapseError::merge(std::uint32_t vertex, const Move& move) {
     }
 }
 
-/// The minimum is the mean height of the planes above the vertex. On a curved surface, triangles
-/// between such vertices still lie below the surface by about half as much (measured on tori), so
-/// the vertex moves on by that. There, a quarter of the quadric remains at the minimum; at a
-/// corner, which the minimum restores exactly, nothing does. If the planes are nearly parallel, the
-/// minimum may be far away: an offset of more than 16 times the error, its root mean square over
-/// the area, is refused.
-glm::dvec3 CollapseError::fitted_offset(std::uint32_t vertex, const Ring& ring) const {
-    constexpr double damping = 1e-3;
-    constexpr double beyond = 0.55;
-    constexpr double remainder_of_curvature = 0.25;
-    constexpr double most = 16.0;
+CollapseError::Local CollapseError::local(std::uint32_t vertex, const Ring& ring) const {
     const Quadric& q = quadrics_[vertex];
     const glm::dvec3 p = input_.point(vertex);
-    double before = q(p);
-    glm::dvec3 slope(q.xx * p.x + q.xy * p.y + q.xz * p.z + q.linear.x,
-                     q.xy * p.x + q.yy * p.y + q.yz * p.z + q.linear.y,
-                     q.xz * p.x + q.yz * p.y + q.zz * p.z + q.linear.z);
+    Local result{q(p),
+                 {q.xx * p.x + q.xy * p.y + q.xz * p.z + q.linear.x,
+                  q.xy * p.x + q.yy * p.y + q.yz * p.z + q.linear.y,
+                  q.xz * p.x + q.yz * p.y + q.zz * p.z + q.linear.z}};
     std::uint32_t last = no_corner;
     for (std::size_t i = 0; sums_per_wedge_ > 0 && i < ring.size; ++i) {
         const std::uint32_t wedge = surface_[ring.corners[i]].wedge;
@@ -136,11 +146,27 @@ glm::dvec3 CollapseError::fitted_offset(std::uint32_t vertex, const Ring& ring) 
         for (std::size_t k = 0; k < values.size(); ++k) {
             const double* s = sums + 4 * k + 1;
             const double value = values[k];
-            slope -= value * glm::dvec3(s[0], s[1], s[2]);
-            before += value * (sums[0] * input_.attribute_weights[k] * value -
-                               2.0 * (s[0] * p.x + s[1] * p.y + s[2] * p.z + s[3]));
+            result.slope -= value * glm::dvec3(s[0], s[1], s[2]);
+            result.value += value * (sums[0] * input_.attribute_weights[k] * value -
+                                     2.0 * (s[0] * p.x + s[1] * p.y + s[2] * p.z + s[3]));
         }
     }
+    return result;
+}
+
+/// The minimum is the mean height of the planes above the vertex. On a curved surface, triangles
+/// between such vertices still lie below the surface by about half as much (measured on tori), so
+/// the vertex moves on by that. There, a quarter of the quadric remains at the minimum; at a
+/// corner, which the minimum restores exactly, nothing does. If the planes are nearly parallel, the
+/// minimum may be far away: an offset of more than 16 times the error, its root mean square over
+/// the area, is refused.
+glm::dvec3 CollapseError::fitted_offset(std::uint32_t vertex, const Ring& ring) const {
+    constexpr double damping = 1e-3;
+    constexpr double beyond = 0.55;
+    constexpr double remainder_of_curvature = 0.25;
+    constexpr double most = 16.0;
+    const Quadric& q = quadrics_[vertex];
+    const auto [before, slope] = local(vertex, ring);
     const double trace = q.xx + q.yy + q.zz;
     const double xx = q.xx + damping * trace;
     const double yy = q.yy + damping * trace;

@@ -134,11 +134,15 @@ class Collapser {
         glm::dvec3 offset{0.0};  ///< In the unit of the points.
     };
     [[nodiscard]] std::vector<Fit> best_fits();
-    void shorten_far_moves(std::vector<Fit>& fits) const;
+    void shorten_far_moves(std::vector<Fit>& fits);
     void fit_positions();
+    [[nodiscard]] std::vector<std::size_t> fitted_counts() const;
+    void start_anew();
+    void compute_all_costs_anew(std::uint8_t flags);
     [[nodiscard]] Obstacles obstacles() const;
 
     CollapseInput input_;
+    std::vector<glm::vec3> original_positions_;  ///< If positions are fitted.
     CollapseSurface surface_;
     std::optional<CollapseError> error_;  ///< If edges are to collapse.
     // By vertex:
@@ -172,6 +176,7 @@ Collapser::Collapser(CollapseInput input) : input_(std::move(input)), surface_(i
     target_ = input_.triangles.value_or(0);
     if (triangles_ <= target_) return;
     error_.emplace(input_, surface_);
+    if (input_.fits_positions) original_positions_ = input_.positions;
     mean_normals_.assign(vertices, glm::vec3(0.0F));
     for (std::size_t t = 0; t < triangles; ++t)
         add_triangle(t);
@@ -739,7 +744,7 @@ std::vector<Collapser::Fit> Collapser::best_fits() {
 
 /// Shortens the moves to positions that are far from the surface of the input. The planes around a
 /// vertex can meet there, but the surface ends before: beside a step, a spike would result.
-void Collapser::shorten_far_moves(std::vector<Fit>& fits) const {
+void Collapser::shorten_far_moves(std::vector<Fit>& fits) {
     // Convex surfaces need 1.3 distances of planes. A vertex of the input lies on its surface, so
     // short moves are within the limit.
     constexpr double max_distances = 1.5;
@@ -753,34 +758,60 @@ void Collapser::shorten_far_moves(std::vector<Fit>& fits) const {
         long_moves.push_back(i);
         balls.push_back({input_.point(fit.vertex) + fit.offset, limit});
     }
+    std::swap(input_.positions, original_positions_);
     const std::vector<bool> touch = touch_surface(balls, input_);
+    std::swap(input_.positions, original_positions_);
     for (std::size_t i = 0; i < balls.size(); ++i) {
         glm::dvec3& offset = fits[long_moves[i]].offset;
         if (!touch[i]) offset *= balls[i].radius / glm::length(offset);
     }
 }
 
-/// Moves the remaining vertices to where they fit the input best, one after another.
+/// Moves the remaining vertices to where they fit best, one after another.
 void Collapser::fit_positions() {
     std::vector<Fit> fits = best_fits();
     shorten_far_moves(fits);
     Ring ring;
-    std::vector<bool> has_moved(input_.positions.size(), false);
     for (const Fit& fit : fits) {
         const glm::vec3 before = input_.positions[fit.vertex];
         const glm::dvec3 point = input_.point(fit.vertex) + fit.offset;
         const glm::vec3 after(input_.center + point / input_.scale);
         if (after == before || !is_finite(after) || !surface_.find_ring(fit.vertex, ring)) continue;
-        if (may_be_at(fit.vertex, ring, after)) {
-            has_moved[fit.vertex] = true;
-        } else {
-            input_.positions[fit.vertex] = before;
-        }
+        if (!may_be_at(fit.vertex, ring, after)) input_.positions[fit.vertex] = before;
     }
-    for (const CornerData& corner : surface_.corners()) {
-        if (corner.vertex != none && has_moved[corner.vertex])
-            result_.moved.emplace_back(corner.wedge, input_.positions[corner.vertex]);
+}
+
+/// Continues with the planes of the present surface instead of those of the input, whose noise
+/// would count at every vertex. Source: memoryless simplification [Lindstrom and Turk 1998].
+void Collapser::start_anew() {
+    error_->forget_planes();
+    for (std::size_t t = 0; t < surface_.corners().size() / 3; ++t) {
+        if (surface_[3 * t].vertex == none) continue;
+        const glm::dvec3 cross = cross_of(t);
+        const double doubled_area = glm::length(cross);
+        if (doubled_area > 0.0) error_->add_triangle(t, cross / doubled_area, doubled_area);
     }
+    for (std::size_t t = 0; t < surface_.corners().size() / 3; ++t) {
+        if (surface_[3 * t].vertex != none) error_->add_lines(t);
+    }
+    error_->spread_errors();
+    compute_all_costs_anew(is_dirty);
+}
+
+/// Returns the numbers of triangles, from many to few, at which vertices move before the end. The
+/// mean distance is 5 to 30 % smaller for it, and the time up to 40 % longer.
+std::vector<std::size_t> Collapser::fitted_counts() const {
+    std::vector<std::size_t> counts;
+    if (!input_.fits_positions || target_ == 0) return counts;
+    std::size_t before = triangles_;
+    for (const std::size_t tenths : {60U, 35U, 20U, 14U}) {
+        const std::size_t count = tenths * target_ / 10;
+        // A smaller step is not worth its time.
+        if (before < count + count / 4) continue;
+        counts.push_back(count);
+        before = count;
+    }
+    return counts;
 }
 
 /// Counts why the remaining vertices do not move.
@@ -817,6 +848,13 @@ Obstacles Collapser::obstacles() const {
     return found;
 }
 
+void Collapser::compute_all_costs_anew(std::uint8_t flags) {
+    for (const std::uint32_t v : alive_) {
+        flags_[v] |= flags;
+        costs_[v] = no_collapse;
+    }
+}
+
 Collapsed Collapser::run() {
     // If a pass has no success, all vertices are checked carefully once more: what lies around
     // their neighbors may have changed. The number of such checks is limited, so that the time is
@@ -825,7 +863,15 @@ Collapsed Collapser::run() {
     std::size_t checks = 0;
     bool was_checked = false;
     bool are_parts_relaxed = false;
+    const std::vector<std::size_t> fitted = fitted_counts();
+    auto next_fit = fitted.begin();
     while (triangles_ > target_) {
+        if (next_fit != fitted.end() && triangles_ <= *next_fit) {
+            while (next_fit != fitted.end() && triangles_ <= *next_fit)
+                ++next_fit;
+            fit_positions();
+            start_anew();
+        }
         const std::size_t before = result_.collapses;
         ++result_.passes;
         run_pass(was_checked ? 1.0 : pass_fraction);
@@ -841,13 +887,18 @@ Collapsed Collapser::run() {
         was_checked = !has_success;
         if (has_success) continue;
         ++checks;
-        for (const std::uint32_t v : alive_) {
-            flags_[v] |= is_dirty | is_careful;
-            costs_[v] = no_collapse;
-        }
+        compute_all_costs_anew(is_dirty | is_careful);
     }
     if (triangles_ > target_ && target_ > 0) result_.obstacles = obstacles();
-    if (input_.fits_positions && error_) fit_positions();
+    if (input_.fits_positions && error_) {
+        fit_positions();
+        for (const CornerData& corner : surface_.corners()) {
+            if (corner.vertex == none) continue;
+            const glm::vec3& position = input_.positions[corner.vertex];
+            if (position != original_positions_[corner.vertex])
+                result_.moved.emplace_back(corner.wedge, position);
+        }
+    }
     result_.triangles = triangles_;
     result_.examined = examined_;
     result_.remaining.reserve(triangles_ / max_count_);

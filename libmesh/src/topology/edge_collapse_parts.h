@@ -202,6 +202,13 @@ class CollapseError {
     /// Adds the plane and the attributes of a triangle before any collapse.
     void add_triangle(std::size_t triangle, const glm::dvec3& normal, double doubled_area);
 
+    /// Forgets the planes and attributes of the input, and keeps the mean errors of vertices. Those
+    /// of the present surface are added then, and spread_errors() ends it.
+    void forget_planes();
+
+    /// Multiplies the mean errors of vertices by the areas that were added.
+    void spread_errors();
+
     /// Adds planes through lines, perpendicular to the triangle, which keep the lines in place.
     void add_lines(std::size_t triangle);
 
@@ -275,6 +282,12 @@ class CollapseError {
         return std::span(attribute_sums_).subspan(wedge * sums_per_wedge_, sums_per_wedge_);
     }
     void add_attributes(std::size_t triangle, const glm::dvec3& normal, double doubled_area);
+    /// The quadric of a vertex and its attributes at its position, and half of the gradient there.
+    struct Local {
+        double value;
+        glm::dvec3 slope;
+    };
+    [[nodiscard]] Local local(std::uint32_t vertex, const Ring& ring) const;
     [[nodiscard]] bool is_within(double squared_error, double cost, std::uint32_t vertex,
                                  const Move& move) const {
         const double area = areas_[vertex] + areas_[move.target];

@@ -17,7 +17,7 @@ struct Ball {
 };
 
 /// Returns for each ball whether its distance from a triangle is at most its radius. The time is
-/// proportional to the number of triangles and to the number of balls in the slab of each.
+/// proportional to the number of triangles, and to that of the balls near the box of each.
 /// \param input  with the triangles of its topology
 std::vector<bool> touch_surface(std::span<const Ball> balls, const CollapseInput& input);
 

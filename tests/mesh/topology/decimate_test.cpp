@@ -11,8 +11,10 @@
 #include <numbers>
 #include <random>
 
+#include "geometry/weld.h"
 #include "mesh/topology/boundary_edges.h"
 #include "mesh/topology/decimated_to.h"
+#include "portable_math.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/mesh_file.h"
@@ -712,13 +714,53 @@ TEST(DecimateFit, HalvesTheDistanceOnCurvedSurfacesAndKeepsTheRest) {
     options.fit_positions = true;
     const FramedMesh fitted = decimated(torus, options, report);
     EXPECT_LT(distance_from_torus(fitted.mesh), 0.5 * distance_from_torus(subset.mesh));
-    EXPECT_EQ(fitted.mesh.triangles, subset.mesh.triangles);
-    EXPECT_EQ(fitted.mesh.texcoords, subset.mesh.texcoords);
-    EXPECT_EQ(fitted.mesh.normals, subset.mesh.normals);
-    EXPECT_EQ(fitted.source_vertex, subset.source_vertex);
+    EXPECT_LE(subset.mesh.triangles.size() - fitted.mesh.triangles.size() + 1, 2U);
     EXPECT_EQ(boundary_edges(fitted.mesh), 0U) << "vertices at one position move together";
-    for (std::size_t v = 0; v < fitted.mesh.positions.size(); ++v)
-        EXPECT_LT(glm::length(fitted.mesh.positions[v] - subset.mesh.positions[v]), 0.02F);
+    for (std::size_t v = 0; v < fitted.mesh.positions.size(); ++v) {
+        const std::uint32_t source = fitted.source_vertex[v];
+        EXPECT_EQ(fitted.mesh.texcoords[v], torus.texcoords[source]);
+        EXPECT_EQ(fitted.mesh.normals[v], torus.normals[source]);
+        EXPECT_LT(glm::length(fitted.mesh.positions[v] - torus.positions[source]), 0.04F);
+    }
+}
+
+/// Returns a sphere whose radius differs at each vertex, by 0.2 % on average.
+Mesh rough_sphere() {
+    Mesh mesh = make_sphere(160, 80);
+    detail::Random random(11);
+    const std::vector<std::uint32_t> classes = detail::weld_positions(mesh.positions);
+    std::vector<float> radii(mesh.positions.size());
+    for (float& radius : radii)
+        radius = 1.0F + 0.003F * static_cast<float>(random.between(-1.0, 1.0));
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+        mesh.positions[v] *= radii[classes[v]];
+    mesh.normals.clear();
+    mesh.tangents.clear();
+    return mesh;
+}
+
+// Planes of rough triangles say less about the surface than those of the surface in between.
+TEST(DecimateFit, FollowsRoughSurfacesByPlanesInBetween) {
+    const Mesh rough = rough_sphere();
+    DecimateOptions options;
+    options.goal = DecimateGoal::distance;
+    options.weights.texcoord = 0.0;
+    options.fit_positions = true;
+    const auto distance = [&](const Mesh& mesh) {
+        double sum = 0.0;
+        std::size_t count = 0;
+        for_each_sample(mesh, [&](const glm::dvec3& p, const glm::dvec2&) {
+            sum += (glm::length(p) - 1.0) * (glm::length(p) - 1.0);
+            ++count;
+        });
+        return std::sqrt(sum / static_cast<double>(count));
+    };
+    options.triangles = 800;
+    const double fitted = distance(decimated(rough, options).mesh);
+    options.fit_positions = false;
+    const double unfitted = distance(decimated(rough, options).mesh);
+    // With the planes of the rough triangles only, a similar sphere has 0.53.
+    EXPECT_LT(fitted, 0.45 * unfitted);
 }
 
 TEST(DecimateFit, FlatFacesEdgesAndCornersDoNotMove) {

@@ -63,6 +63,8 @@ struct DecimateOptions {
     bool keep_seams = false;    ///< Texture seams, hard edges and material borders do not change.
     /// Moves the vertices that remain to where the result fits the input best, which about halves
     /// the distance on curved surfaces. Boundaries, and vertices that could not be removed, stay.
+    /// With `triangles`, vertices move at up to four larger numbers of triangles, too, and errors
+    /// are those from the surface there, plus what it had.
     bool fit_positions = false;
     /// Connected parts whose bounding box has a diagonal shorter than this length are removed
     /// first, and their triangles are counted as a finding; the largest part of each material of a
@@ -98,7 +100,7 @@ struct DecimateOptions {
 /// of triangles, except that computed tangents depend on the latter (tangents.h). Collapsed
 /// triangles have no influence. The time is linear for all shapes, except for sorting.
 ///
-/// Source: [Garland and Heckbert 1997], [Hoppe 1999].
+/// Source: [Garland and Heckbert 1997], [Hoppe 1999], [Lindstrom and Turk 1998].
 FramedMesh decimated(const Mesh& mesh, const DecimateOptions& options,
                      Report& report = IgnoredReport(), const Deformation& deformation = {});
 
