@@ -52,8 +52,8 @@ bool is_preparation(const std::string& command) {
 }
 
 bool calls_relief(const std::string& command) {
-    return starts_with_any(
-        command, {"relief-", "relief make ", "build/release/bin/relief", "scripts/", "./scripts/"});
+    return starts_with_any(command, {"relief-", "relief make ", "relief check ",
+                                     "build/release/bin/relief", "scripts/", "./scripts/"});
 }
 
 /// Joins a line that ends in a backslash with the lines that follow.
@@ -412,7 +412,7 @@ TEST_P(HelpExamples, RunWithoutAMessage) {
 
 INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
                          testing::Values("relief-accuracy", "relief-bake", "relief-mesh",
-                                         "relief-view", "relief make"),
+                                         "relief-view", "relief make", "relief check"),
                          test_name);
 
 TEST_LABELS(slow);

@@ -8,6 +8,7 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "check_rules.h"
 #include "hard_cases/hard_cases.h"
 #include "support/shared_data.h"
 
@@ -16,6 +17,10 @@ namespace {
 
 std::vector<PageSection> hard_case_sections() {
     return {{"", hard_cases_page()}};
+}
+
+std::vector<PageSection> check_rule_sections() {
+    return {{"", tools::check_rules_page()}};
 }
 
 /// Returns the sections of one function of a page whose sections have several.
@@ -80,7 +85,8 @@ const std::vector<GeneratedDocument>& generated_documents() {
         {"real_bump", "bump.md", real_bump_table, real_heights},
         {"real_bake", "bake.md", real_bake_table, real_cloth},
         {"real_compression", "compression.md", real_compression_table, real_normals},
-        {"hard_cases", "hard-cases.md", hard_case_sections}};
+        {"hard_cases", "hard-cases.md", hard_case_sections},
+        {"check_rules", "check-rules.md", check_rule_sections}};
     return all;
 }
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The tool relief: its own command, make, and the other tools as commands.
+/// The tool relief: its own commands, make and check, and the other tools as commands.
 /// Tests: tests/tools/relief_make_test.cpp.
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <string>
 
 #include "common/command.h"
@@ -35,7 +36,11 @@ inline constexpr std::array sibling_tools = {
 /// then in PATH. If it cannot be run, the process ends with the exit code 1.
 void become_tool(int argc, char** argv);
 
+/// Returns the file of another tool beside this program, or only its name, for PATH.
+std::filesystem::path sibling_program(const std::string& name);
+
 Command add_make_command(CLI::App& tool);
+Command add_check_files_command(CLI::App& tool);
 
 /// Adds the commands of sibling_tools, for the help page.
 Command add_mesh_tool(CLI::App& tool);
@@ -46,8 +51,9 @@ Command add_accuracy_tool(CLI::App& tool);
 /// The whole tool, for main() and for tests that run it in their own process.
 inline Tool relief_driver() {
     return {"relief",
-            "Makes assets from dense meshes, and runs the other tools of relief.",
-            {add_make_command, add_mesh_tool, add_bake_tool, add_view_tool, add_accuracy_tool}};
+            "Makes assets from dense meshes, checks assets, and runs the other tools of relief.",
+            {add_make_command, add_check_files_command, add_mesh_tool, add_bake_tool, add_view_tool,
+             add_accuracy_tool}};
 }
 
 }  // namespace relief::tools

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "driver.h"
@@ -34,6 +35,12 @@ Command add_sibling(CLI::App& tool, const SiblingTool& sibling) {
 }
 
 }  // namespace
+
+std::filesystem::path sibling_program(const std::string& name) {
+    const std::filesystem::path beside = own_folder("") / name;
+    std::error_code error;
+    return std::filesystem::exists(beside, error) ? beside : std::filesystem::path(name);
+}
 
 void become_tool(int argc, char** argv) {
     if (argc < 2) return;

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Runs the remedies of `relief check --fix`. Tests: tests/check/check_fix_test.cpp.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "check_report.h"
+
+namespace relief::tools {
+
+/// Runs the remedies of errors and warnings, each once for a file, in an order in which no one
+/// undoes another. They run as processes without a shell, so that file names have no meaning.
+///
+/// \param folder  of the fixed copies, which have the names of the files in it; absent: the files
+///         themselves are replaced
+/// \return in the order of the files; a file whose remedies fail is unchanged
+std::vector<CheckFix> fix_files(const std::vector<CheckedItem>& items,
+                                const std::optional<std::filesystem::path>& folder);
+
+}  // namespace relief::tools
