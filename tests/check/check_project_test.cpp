@@ -109,6 +109,14 @@ TEST_F(Project, AcceptsABaselineUntilItGrows) {
     EXPECT_THAT(workplace.read("out/new.json"), HasSubstr("\"file\": \"in/rock.gltf\""));
 }
 
+TEST_F(Project, TheDocumentedExampleIsValid) {
+    const std::string page = test::read_bytes(test::source_directory() / "docs/check.md");
+    const std::size_t begin = page.find("```json\n") + 8;
+    const ProgramResult result = run(page.substr(begin, page.find("```", begin) - begin));
+    EXPECT_EQ(result.exit_code, 3) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("in/rock.gltf: error: "));
+}
+
 TEST_F(Project, RefusesMistakes) {
     const auto error = [&](const std::string& project) {
         const ProgramResult result = run(project);

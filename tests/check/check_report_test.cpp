@@ -143,8 +143,8 @@ TEST(CheckReport, GithubHasAnAnnotationForEachFinding) {
               "::warning file=a b/<\"rock\">&'%25%2C%3A%0A.glb,title=mesh/repeated-triangle::"
               "mesh 'x<y': 1 x repeated triangle%0A-> relief-mesh repair 'a b/<\"rock\">&'\\''%25,:"
               "%0A.glb' out.glb\n"
-              "::error file=/tmp/\xC3\xA9.png,title=file/unreadable::is truncated%0A-> export it "
-              "again\n");
+              "::error file=/tmp/\xC3\xA9.png,title=file/unreadable::is truncated%0A-> permit "
+              "reading it, or export it again\n");
     results.shows_notes = true;
     EXPECT_THAT(report_text(results, CheckFormat::github), HasSubstr("::notice file=a b/"));
 }

@@ -173,6 +173,24 @@ TEST_F(CheckCommand, ReportsWhatCannotBeRead) {
     if (::geteuid() != 0) fs::permissions(workplace / "in/closed", fs::perms::owner_all);
 }
 
+TEST_F(CheckCommand, ReportsEachLinkToAnImage) {
+    plant("b", "texture/green-down");
+    fs::create_symlink("b_normal.png", workplace / "in/a.png");
+    const std::string out = workplace.run("relief check in").out;
+    EXPECT_THAT(out, HasSubstr("in/a.png: error: green is down"));
+    EXPECT_THAT(out, HasSubstr("in/b_normal.png: error: green is down"));
+    EXPECT_THAT(out, HasSubstr("in all    4 files: 2 errors"));
+}
+
+TEST_F(CheckCommand, PrintsResultsIfTheCacheCannotBeWritten) {
+    plant("a", "mesh/repeated-triangle");
+    fs::create_directory(workplace / "out/cache");
+    const ProgramResult result = workplace.run("relief check in --cache out/cache");
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.out, HasSubstr("[mesh/repeated-triangle]"));
+    EXPECT_THAT(result.error, HasSubstr("relief: error: out/cache: "));
+}
+
 TEST_F(CheckCommand, GivesTheSameForAnyNumberOfThreads) {
     for (int variant = 0; variant < 4; ++variant)
         plant(fmt::format("v{}", variant), "mesh/flipped-neighbors", variant);
@@ -190,6 +208,8 @@ TEST_F(CheckCommand, RefusesContradictions) {
          {"check in --fix --in-place -o out", 2, "--fix: needs either"},
          {"check in --report out/x.pdf", 2,
           "--report out/x.pdf: .pdf is not the extension of a report"},
+         {"check in --report in/relief.json", 2, "--report in/relief.json: "},
+         {"check in --cache out/a.json --report out/a.json", 2, "--report out/a.json: "},
          {"check in --config none.json", 1, "none.json: "},
          {"check data/README.md", 2,
           "data/README.md: is neither a folder nor a model or an image"}});

@@ -11,6 +11,7 @@
 #include "common/options.h"
 #include "common/summary.h"
 #include "convert.h"
+#include "map_remedies.h"
 #include "mesh_accuracy.h"
 #include "mesh_maps.h"
 #include "mesh_models.h"
@@ -97,38 +98,15 @@ CheckedMap check_map(const std::filesystem::path& file, std::optional<Green> gre
 
 /// The command that remedies a condition; empty if there is none. Output files are "out.png".
 std::string remedy_for(MapCondition condition, const CheckedMap& map) {
-    const auto convert = [&](const char* options) {
-        return fmt::format("relief-bake convert {} out.png{}", quoted(map.file), options);
-    };
     switch (condition) {
         case MapCondition::not_normals:
             if (map.check.content != MapContent::gray) return "";
             return fmt::format("relief-bake bump {} out.png", quoted(map.file));
         case MapCondition::object_space:
-            return convert(" --to-tangent mesh.glb");
-        case MapCondition::z_missing:
-        case MapCondition::z_constant:
-            return convert(" --rebuild-z rg");
-        case MapCondition::signed_samples:
-            return convert(" --input-signed");
-        case MapCondition::tagged_as_color:
-            return convert("");
-        case MapCondition::texel_not_finite:
-        case MapCondition::texel_without_direction:
-        case MapCondition::not_unit:
-        case MapCondition::not_quite_unit:
-            return convert(" --normalize");
-        case MapCondition::green_contradicted:
-        case MapCondition::green_down:
-            return convert(" --flip green");
-        case MapCondition::flat_contradicted:
-            return convert(" --input-zero-code 127.5");
-        case MapCondition::bits_unused:
-            return convert(" --bits 8");
-        case MapCondition::alpha_opaque:
-            return convert(" --alpha drop");
+            return fmt::format("relief-bake convert {} out.png --to-tangent mesh.glb",
+                               quoted(map.file));
         default:
-            return "";
+            return with_files(map_remedy(condition), quoted(map.file), "out.png");
     }
 }
 

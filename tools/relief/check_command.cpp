@@ -105,6 +105,19 @@ void check_options(const CLI::App& app, const CheckCommand& command) {
     if (command.cache) require_folder_of(*command.cache);
 }
 
+/// No output may replace relief.json, or another output. \throws UsageError
+void check_outputs(const CheckCommand& command, const CheckProject& project) {
+    std::vector<fs::path> others = {project.file};
+    if (command.cache) {
+        check_distinct("--cache", *command.cache, others);
+        others.push_back(*command.cache);
+    }
+    for (const fs::path& file : command.reports) {
+        check_distinct("--report", file, others);
+        others.push_back(file);
+    }
+}
+
 ExitCode print_rules(const CheckCommand& command) {
     if (command.format == CheckFormat::json) {
         print_json(json_list(check_rules(), [](const CheckRule& rule) -> Json {
@@ -155,22 +168,28 @@ class Checker {
                        [&] { return check_model_file(input); });
         });
         check_images(inputs, items);
-        if (cache_) cache_->write();
         return items;
+    }
+
+    /// \throws FileError
+    void write_cache() const {
+        if (cache_) cache_->write();
     }
 
   private:
     struct ImageTask {
         fs::path file;
         std::vector<ImageRole> roles;
-        std::optional<std::size_t> item;  ///< Of the walk.
+        std::vector<std::size_t> items;  ///< Several for links to one file.
     };
 
     void check_images(const std::vector<CheckInput>& inputs, std::vector<CheckedItem>& items) {
         std::map<fs::path, ImageTask> tasks;
         for (std::size_t i = 0; i < inputs.size(); ++i) {
-            if (inputs[i].kind == CheckedKind::image)
-                tasks[identity_of(inputs[i].file)] = {inputs[i].file, {}, i};
+            if (inputs[i].kind != CheckedKind::image) continue;
+            ImageTask& task = tasks[identity_of(inputs[i].file)];
+            if (task.file.empty()) task.file = inputs[i].file;
+            task.items.push_back(i);
         }
         for (const CheckedItem& item : items) {
             for (const UsedImage& image : item.images) {
@@ -184,16 +203,21 @@ class Checker {
             std::ranges::sort(task.roles);
             const auto rest = std::ranges::unique(task.roles);
             task.roles.erase(rest.begin(), rest.end());
-            if (!task.item) {
-                task.item = items.size();
-                items.emplace_back();
+            if (task.items.empty()) {
+                task.items.push_back(items.size());
+                items.emplace_back().file = task.file;
             }
             list.push_back(std::move(task));
         }
         run("images", list.size(), [&](std::size_t i) {
             const ImageTask& task = list[i];
-            items[*task.item] = cached(task.file, roles_key(task.roles),
-                                       [&] { return check_image_file(task.file, task.roles); });
+            const CheckedItem item = cached(task.file, roles_key(task.roles), [&] {
+                return check_image_file(task.file, task.roles);
+            });
+            for (const std::size_t each : task.items) {
+                items[each] = item;
+                if (each < inputs.size()) items[each].file = inputs[each].file;
+            }
         });
     }
 
@@ -242,12 +266,13 @@ std::map<fs::path, ImageFigures> figures_of(const std::vector<CheckedItem>& item
 }
 
 /// Checks all files and applies the project.
-CheckResults results_of(const CheckCommand& command, const CheckProject& project) {
+CheckResults results_of(const CheckCommand& command, const CheckProject& project,
+                        Checker& checker) {
     WalkedFiles walked =
         walk_files(command.paths, [&](const fs::path& path) { return project.excludes(path); });
     CheckResults results;
     results.shows_notes = command.notes;
-    results.items = Checker(command).check(walked.files);
+    results.items = checker.check(walked.files);
     std::ranges::move(walked.findings, std::back_inserter(results.items));
     const auto images = figures_of(results.items);
     for (CheckedItem& item : results.items) {
@@ -280,8 +305,10 @@ ExitCode run(const CLI::App& app, const CheckCommand& command) {
     if (command.lists_rules) return print_rules(command);
     set_thread_limit(command.general.threads);
     CheckProject project = project_of(command);
+    check_outputs(command, project);
     if (command.writes_baseline) project.baseline.clear();
-    CheckResults results = results_of(command, project);
+    Checker checker(command);
+    CheckResults results = results_of(command, project, checker);
     if (command.writes_baseline) write_baseline(project, results.items);
     if (command.fixes) {
         results.fixes =
@@ -304,6 +331,7 @@ ExitCode run(const CLI::App& app, const CheckCommand& command) {
         }
     }
     if (!command.general.quiet) print_text(report_text(results, command.format));
+    checker.write_cache();
     return exit_code_of(app, command, results);
 }
 

@@ -126,10 +126,12 @@ void add_reading(const CheckedModel& model, CheckedItem& item) {
     for (const Finding& finding : model.reading_problems.findings()) {
         // The conditions of the mesh have it, with its vertex.
         if (finding.kind.starts_with("non-finite ")) continue;
-        const char* const id = finding.kind.starts_with("missing image")   ? "model/missing-image"
-                               : finding.kind.starts_with("image outside") ? "model/image-outside"
-                                                                           : "model/incomplete";
-        item.add(rule_named(id), "", to_string(finding), finding.count);
+        const bool is_missing = finding.kind.starts_with("missing image");
+        const bool is_outside = finding.kind.starts_with("image outside");
+        const char* const id = is_missing   ? "model/missing-image"
+                               : is_outside ? "model/image-outside"
+                                            : "model/incomplete";
+        item.add(rule_named(id), "", is_missing ? finding.kind : to_string(finding), finding.count);
     }
     for (const Finding& finding : model.reading_notes.findings())
         item.add(rule_named("model/reader-note"), "", to_string(finding), finding.count);

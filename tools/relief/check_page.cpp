@@ -82,25 +82,38 @@ std::string line_of(const CheckedItem& item, const CheckFinding& finding) {
     const std::string place = finding.place.empty() ? "" : finding.place + ": ";
     const std::string remedy = remedy_text(item, finding);
     const auto escaped = [](const std::string& text) { return html_escaped(printable(text)); };
+    const std::string advice = remedy.empty() ? ""
+                               : remedy.starts_with("relief-")
+                                   ? fmt::format("<br>→ <code>{}</code>", escaped(remedy))
+                                   : fmt::format("<br>→ {}", escaped(remedy));
     return fmt::format("<li class=\"{0}\"><b>{0}</b> {1} <code>{2}</code>{3}</li>\n",
                        enum_name(finding.severity), escaped(place + finding.text), finding.rule->id,
-                       remedy.empty() ? "" : fmt::format("<br>→ <code>{}</code>", escaped(remedy)));
+                       advice);
 }
 
-std::string card_of(const CheckedItem& item, const std::string& picture) {
-    std::vector<const CheckFinding*> findings;
-    for (const CheckFinding& finding : item.findings)
-        findings.push_back(&finding);
-    std::ranges::stable_sort(findings, std::ranges::greater{}, &CheckFinding::severity);
+/// Returns a list of findings; empty if there are none.
+std::string list_of(const CheckedItem& item, const std::vector<const CheckFinding*>& findings) {
     std::string lines;
     for (std::size_t i = 0; i < std::min(findings.size(), max_lines); ++i)
         lines += line_of(item, *findings[i]);
     if (findings.size() > max_lines)
         lines += fmt::format("<li>... and {} more</li>\n", findings.size() - max_lines);
+    return lines.empty() ? "" : fmt::format("<ul>\n{}</ul>\n", lines);
+}
+
+std::string card_of(const CheckedItem& item, const std::string& picture) {
+    std::vector<const CheckFinding*> alarms, notes;
+    for (const CheckFinding& finding : item.findings)
+        (finding.severity == CheckSeverity::note ? notes : alarms).push_back(&finding);
+    std::ranges::stable_sort(alarms, std::ranges::greater{}, &CheckFinding::severity);
+    const std::string folded =
+        notes.empty() ? ""
+                      : fmt::format("<details><summary>{}</summary>\n{}</details>\n",
+                                    counted(notes.size(), "note"), list_of(item, notes));
     const bool has_error = count_of(item, CheckSeverity::error) > 0;
-    return fmt::format("<article{}>{}\n<h2>{}</h2>\n<ul>\n{}</ul>\n</article>\n",
+    return fmt::format("<article{}>{}\n<h2>{}</h2>\n{}{}</article>\n",
                        has_error ? " class=\"failed\"" : "", picture,
-                       html_escaped(printable(item.file.string())), lines);
+                       html_escaped(printable(item.file.string())), list_of(item, alarms), folded);
 }
 
 /// The rules with findings, and their numbers of files.

@@ -13,6 +13,7 @@
 #include "common/command.h"
 #include "common/html.h"
 #include "common/text.h"
+#include "map_remedies.h"
 
 namespace relief::tools {
 namespace {
@@ -222,20 +223,7 @@ std::string remedy_text(const CheckedItem& item, const CheckFinding& finding) {
     const bool is_of_image =
         finding.rule->id.starts_with("map/") || finding.rule->id.starts_with("texture/");
     if (is_of_image && item.kind == CheckedKind::model) return "export it again";  // Embedded.
-    std::string text;
-    for (std::string_view rest = remedy; !rest.empty();) {
-        const std::size_t end = std::min(rest.find(' '), rest.size());
-        const std::string_view word = rest.substr(0, end);
-        text += text.empty() ? "" : " ";
-        if (word == "IN")
-            text += quoted(as_argument(item.file));
-        else if (word == "OUT")
-            text += output_name(item.file);
-        else
-            text += word;
-        rest.remove_prefix(std::min(end + 1, rest.size()));
-    }
-    return text;
+    return with_files(remedy, quoted(as_argument(item.file)), output_name(item.file));
 }
 
 std::string report_text(const CheckResults& results, CheckFormat format) {

@@ -8,6 +8,8 @@
 #include <array>
 #include <cassert>
 
+#include "map_remedies.h"
+
 namespace relief::tools {
 namespace {
 
@@ -16,7 +18,6 @@ using enum CheckSeverity;
 constexpr std::string_view repair_mesh = "relief-mesh repair IN OUT";
 constexpr std::string_view repair_normals = "relief-mesh process IN OUT --repair-normals";
 constexpr std::string_view new_tangents = "relief-mesh process IN OUT --tangents mikktspace";
-constexpr std::string_view renormalize = "relief-bake convert IN OUT --normalize";
 constexpr std::string_view no_remedy = "";
 
 /// Makes the rule of a condition of meshes.
@@ -27,9 +28,12 @@ constexpr CheckRule mesh_rule(std::string_view id, CheckSeverity severity, MeshC
 }
 
 /// Makes the rule of a condition of normal maps.
+/// \param advice  if no command remedies the condition
 constexpr CheckRule map_rule(std::string_view id, CheckSeverity severity, MapCondition condition,
                              std::string_view title, std::string_view cause, std::string_view cost,
-                             std::string_view remedy) {
+                             std::string_view advice = "") {
+    const std::string_view command = map_remedy(condition);
+    const std::string_view remedy = command.empty() ? advice : command;
     return {id, severity, title, cause, cost, remedy, std::nullopt, condition};
 }
 
@@ -56,22 +60,20 @@ constexpr std::array all_rules = {
               no_remedy},
     CheckRule{"file/unreadable", error, "The file cannot be read",
               "damaged, truncated, of another format, without permission, or a link to itself",
-              "no program can use it", "export it again"},
+              "no program can use it", "permit reading it, or export it again"},
     CheckRule{"folder/unreadable", error, "The folder cannot be read", "without permission",
               "its files are not checked", no_remedy},
     map_rule("map/all-flat", warning, MapCondition::all_flat, "Every texel is the same",
              "an empty layer was exported, or a bake hit nothing", "memory without any detail",
              "remove the map from the material"),
     map_rule("map/alpha-constant", note, MapCondition::alpha_opaque, "Constant alpha",
-             "exported with a fourth channel", "a third more memory",
-             "relief-bake convert IN OUT --alpha drop"),
+             "exported with a fourth channel", "a third more memory"),
     map_rule("map/alpha-heights", note, MapCondition::alpha_heights, "Heights in alpha",
              "packed for parallax mapping", "none if the engine reads them", no_remedy),
     map_rule("map/alpha-other", note, MapCondition::alpha_other, "Something in alpha",
              "several maps packed in one", "none if the engine reads it", no_remedy),
     map_rule("map/bits-unused", note, MapCondition::bits_unused, "Bits are unused",
-             "8-bit content saved with 16 bits or float", "twice or four times the memory",
-             "relief-bake convert IN OUT --bits 8"),
+             "8-bit content saved with 16 bits or float", "twice or four times the memory"),
     CheckRule{"map/contradicts-name", warning, "The map is not what its name says",
               "exported under the name of another map", "importers that go by names use it wrongly",
               "rename it, or export it again"},
@@ -84,34 +86,30 @@ constexpr std::array all_rules = {
     map_rule("map/flat-contradicted", warning, MapCondition::flat_contradicted,
              "Zero is not as stated", "the metadata survived an edit",
              "flat areas lean by 0.3 "
-             "degrees, which shows at mirrored seams",
-             "relief-bake convert IN OUT --input-zero-code 127.5"),
+             "degrees, which shows at mirrored seams"),
     map_rule("map/gray-texels", note, MapCondition::texel_gray, "Gray texels",
              "a background instead of padding", "dark seams in mip levels",
              "bake it with --padding"),
     map_rule("map/green-contradicted", error, MapCondition::green_contradicted,
              "Green is not as stated", "exported for another engine than the name or metadata say",
-             "bumps are hollows", "relief-bake convert IN OUT --flip green"),
+             "bumps are hollows"),
     map_rule("map/green-down", note, MapCondition::green_down, "Green is down",
-             "made for DirectX or Unreal", "bumps are hollows in OpenGL, Unity, Godot and glTF",
-             "relief-bake convert IN OUT --flip green"),
+             "made for DirectX or Unreal", "bumps are hollows in OpenGL, Unity, Godot and glTF"),
     map_rule("map/green-undecidable", note, MapCondition::green_unknown, "Green is undecidable",
              "no slopes in two directions, or painted by hand", "none", no_remedy),
     map_rule("map/no-directions", warning, MapCondition::texel_without_direction,
              "Texels without direction", "a black background, or texels that a bake missed",
-             "programs show them differently, down to NaN", renormalize),
+             "programs show them differently, down to NaN"),
     map_rule("map/not-finite", error, MapCondition::texel_not_finite, "Texels are not finite",
-             "a division by zero of the baker", "black or white blocks that grow in mip levels",
-             renormalize),
+             "a division by zero of the baker", "black or white blocks that grow in mip levels"),
     map_rule("map/not-normals", error, MapCondition::not_normals, "Not a normal map",
              "another map was assigned or named as one", "the surface shades at random",
              "assign the right map; relief-bake bump converts heights"),
     map_rule("map/not-quite-unit", note, MapCondition::not_quite_unit, "Not quite of unit length",
-             "filtered or compressed without normalization", "slightly wrong highlights",
-             renormalize),
+             "filtered or compressed without normalization", "slightly wrong highlights"),
     map_rule("map/not-unit", warning, MapCondition::not_unit, "Not of unit length",
              "blended, resized or painted as a color",
-             "programs that do not normalize shade it wrong", renormalize),
+             "programs that do not normalize shade it wrong"),
     map_rule("map/object-space", error, MapCondition::object_space, "Object-space normals",
              "baked in the space of the object", "shades wrong as a tangent-space map",
              "relief-bake convert with --to-tangent MODEL"),
@@ -120,11 +118,10 @@ constexpr std::array all_rules = {
     map_rule("map/seam-y", note, MapCondition::seam_y, "Seam top and bottom", "not made to tile",
              "a visible seam if the map is repeated", no_remedy),
     map_rule("map/signed-samples", error, MapCondition::signed_samples, "Signed samples",
-             "float samples hold n, not (n + 1) / 2", "all normals are wrong",
-             "relief-bake convert IN OUT --input-signed"),
+             "float samples hold n, not (n + 1) / 2", "all normals are wrong"),
     map_rule("map/tagged-as-color", note, MapCondition::tagged_as_color, "Tagged as a color",
              "saved with the defaults of an image editor",
-             "programs that apply such tags change the normals", "relief-bake convert IN OUT"),
+             "programs that apply such tags change the normals"),
     map_rule("map/through-srgb", error, MapCondition::stored_through_srgb,
              "Stored through the sRGB curve", "saved as a color", "all normals lean to one corner",
              "export it again as data (non-color)"),
@@ -135,12 +132,10 @@ constexpr std::array all_rules = {
              "made of ripples along one axis, or a channel is lost", "no slope up and down",
              no_remedy),
     map_rule("map/z-constant", note, MapCondition::z_constant, "Constant third component",
-             "packed for two channels", "normals are too short on slopes",
-             "relief-bake convert IN OUT --rebuild-z rg"),
+             "packed for two channels", "normals are too short on slopes"),
     map_rule("map/z-missing", warning, MapCondition::z_missing, "No third component",
              "packed for two channels",
-             "programs that read three channels, as glTF requires, get wrong normals",
-             "relief-bake convert IN OUT --rebuild-z rg"),
+             "programs that read three channels, as glTF requires, get wrong normals"),
     mesh_rule("mesh/boundary-edge", note, MeshCondition::edge_boundary, "Boundary edges",
               "an open surface", "none, unless it should be closed",
               "relief-mesh remesh closes a surface"),
@@ -262,7 +257,7 @@ constexpr std::array all_rules = {
               "a map that was baked with other tangents shades wrong at seams", no_remedy},
     CheckRule{"texture/green-down", error, "Green of a glTF normal map is down",
               "made for DirectX or Unreal", "bumps are hollows: glTF has green up",
-              "relief-bake convert IN OUT --flip green"},
+              map_remedy(MapCondition::green_down)},
     CheckRule{"texture/not-power-of-two", note, "The size is not a power of two",
               "cropped or scanned images", "older devices cannot make mip levels of it",
               "resize it"},
