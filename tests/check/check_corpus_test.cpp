@@ -64,6 +64,7 @@ TEST(PlantedDefects, AreFoundWithoutOtherAlarms) {
 }
 
 // Three images of Corset are not in the folder.
+TEST_LABELS(not_sanitized);
 TEST(RealModels, RaiseNoFalseAlarm) {
     RELIEF_NEEDS_SHARED(models, "data/models/gltf");
     const ProgramResult result =

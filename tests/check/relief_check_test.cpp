@@ -198,6 +198,32 @@ TEST_F(CheckCommand, GivesTheSameForAnyNumberOfThreads) {
               workplace.run("relief check in --notes --threads 4").out);
 }
 
+// action.yml calls this script.
+TEST_F(CheckCommand, RunsInAWorkflow) {
+    plant("a", "mesh/repeated-triangle");
+    const ProgramResult result = workplace.run(
+        "RELIEF_PATHS='in/*.gltf' RELIEF_OPTIONS=--strict GITHUB_ACTIONS=true "
+        "scripts/dev/check-assets");
+    EXPECT_EQ(result.exit_code, 3) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("::warning file=in/a.gltf,title=mesh/repeated-triangle::"));
+    const ProgramResult text = workplace.run("RELIEF_PATHS=in scripts/dev/check-assets");
+    EXPECT_EQ(text.exit_code, 0) << text.error;
+    EXPECT_THAT(text.out, HasSubstr("in/a.gltf: warning: "));
+}
+
+// What relief itself makes has no defects.
+TEST_F(CheckCommand, AcceptsTheAssetsThatReliefMakes) {
+    for (const char* line :
+         {"relief make data/vase.obj in/vase.gltf --triangles 300 --size 64 --padding 2 "
+          "--occlusion-rays 2 --quiet",
+          "relief-bake bump data/bricks-height.png in/bricks_normal.png --quiet"}) {
+        const ProgramResult made = workplace.run(line);
+        ASSERT_EQ(made.exit_code, 0) << made.error;
+    }
+    const ProgramResult result = workplace.run("relief check in --strict");
+    EXPECT_EQ(result.exit_code, 0) << result.out;
+}
+
 TEST_F(CheckCommand, RefusesContradictions) {
     test::expect_refusals(
         workplace, "relief", "x.glb",

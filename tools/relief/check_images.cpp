@@ -226,9 +226,8 @@ class ImageCheck {
         const int size = std::min(known_.image.width, known_.image.height);
         switch (condition) {
             case MapCondition::texel_facing_back:
-                // The high surface of a bake may lean so far.
-                return known_.metadata.contains("relief:bake") ? CheckSeverity::note
-                                                               : rule.severity;
+                // The high surface of a bake may lean so far. Maps of relief say what they are.
+                return known_.stated.kind ? CheckSeverity::note : rule.severity;
             case MapCondition::all_flat:
                 return size < min_wasteful_size ? CheckSeverity::note : rule.severity;
             case MapCondition::z_missing:
