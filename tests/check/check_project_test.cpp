@@ -84,7 +84,7 @@ TEST_F(Project, LimitsBudgets) {
     EXPECT_THAT(rules(R"({"files": "a/**", "triangles": 1})"), Not(HasSubstr("budget/")));
     // 0.96 of the image on a sheet of about 2 x 2 units.
     EXPECT_THAT(rules(R"({"texel_density": [40, 80]})"),
-                HasSubstr("texels per unit, not 40 to 80 [budget/texel-density]"));
+                HasSubstr("has 29.15 texels per unit, not 40 to 80 [budget/texel-density]"));
     EXPECT_THAT(rules(R"({"texel_density": [20, 40]})"), Not(HasSubstr("budget/")));
 }
 

@@ -16,7 +16,8 @@ namespace relief::tools {
 ///
 /// \param folder  of the fixed copies, which have the names of the files in it; absent: the files
 ///         themselves are replaced
-/// \return in the order of the files; a file whose remedies fail is unchanged
+/// \return in the order of the files. If a remedy fails, the file stays as the one before it left
+/// it
 std::vector<CheckFix> fix_files(const std::vector<CheckedItem>& items,
                                 const std::optional<std::filesystem::path>& folder);
 

@@ -277,12 +277,11 @@ class DocumentCheck {
         std::set<std::pair<std::size_t, std::size_t>> seen;
         for (const auto& instance : view_.primitives) {
             if (!seen.emplace(instance.what.mesh, instance.what.primitive).second) continue;
-            const Mesh mesh = document_.mesh(instance.what);
-            const GltfMaterial* const material = material_of(mesh);
+            const GltfMaterial* const material = material_of(document_.mesh(instance.what));
             if (material == nullptr) continue;
-            const Texture* const color = find_texture(*material, TextureSlot::base_color);
-            const Texture* const normals = find_texture(*material, TextureSlot::normal);
-            const Texture* const texture = color != nullptr ? color : normals;
+            const bool has_color = find_texture(*material, TextureSlot::base_color) != nullptr;
+            const TextureSlot slot = has_color ? TextureSlot::base_color : TextureSlot::normal;
+            const Texture* const texture = find_texture(*material, slot);
             if (texture == nullptr || texture->image >= view_.images.size()) continue;
             const auto index = static_cast<std::size_t>(material - view_.materials.data());
             MaterialFigures& surface = surfaces[index];
@@ -292,6 +291,10 @@ class DocumentCheck {
                 surface.file = shown(*file);
             else
                 surface.embedded = texture->image;
+            const GltfTexcoords& texcoords = material->texcoords_of(slot);
+            Mesh mesh = document_.mesh(instance.what, texcoords.set);
+            for (glm::vec2& texcoord : mesh.texcoords)
+                texcoord *= texcoords.transform.scale;
             add_areas(mesh, mesh.triangles, instance.world_from_object, surface);
         }
         for (auto& [index, surface] : surfaces)
