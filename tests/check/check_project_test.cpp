@@ -88,6 +88,17 @@ TEST_F(Project, LimitsBudgets) {
     EXPECT_THAT(rules(R"({"texel_density": [20, 40]})"), Not(HasSubstr("budget/")));
 }
 
+TEST_F(Project, MeasuresTexelDensityOfTiledTextures) {
+    json model = json::parse(workplace.read("in/rock.gltf"));
+    model["extensionsUsed"] = {"KHR_texture_transform"};
+    model["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] = {
+        {"KHR_texture_transform", {{"scale", {2.0, 8.0}}}}};
+    workplace.write("in/rock.gltf", model.dump());
+    // Four times 29.15.
+    EXPECT_THAT(run(R"({"budgets": [{"texel_density": [0, 1]}]})").out,
+                HasSubstr("has 116.6 texels per unit"));
+}
+
 TEST_F(Project, AcceptsABaselineUntilItGrows) {
     workplace.write("in/relief.json", R"({"rules": {"mesh/bow-tie-vertex": "error"}})");
     const ProgramResult written = workplace.run("relief check in --strict --write-baseline");
