@@ -7,8 +7,9 @@
 //
 // DIR is the folder of the npm package gltf-validator; without it, NODE_PATH is searched. With a
 // baseline, errors of OUT count, but other messages only if they are new: of a code that IN has fewer
-// of. Images that are missing in both count as such messages. Exit status: 0 if there are no errors
-// or (new) warnings, 1 if there are, 2 if the validator is not to be found.
+// of, in proportion to its primitives, because levels of detail repeat what is said of them. Images
+// that are missing in both count as such messages. Exit status: 0 if there are no errors or (new)
+// warnings, 1 if there are, 2 if the validator is not to be found.
 import { readFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 import path from "node:path";
@@ -41,7 +42,8 @@ function loadValidator(folder) {
     }
 }
 
-async function messagesOf(validator, file) {
+/// Returns { messages, primitives }.
+async function reportOn(validator, file) {
     const bytes = new Uint8Array(await readFile(file));
     const report = await validator.validateBytes(bytes, {
         uri: path.basename(file),
@@ -49,15 +51,17 @@ async function messagesOf(validator, file) {
         externalResourceFunction: async (uri) =>
             new Uint8Array(await readFile(path.join(path.dirname(file), decodeURIComponent(uri)))),
     }).catch((error) => ({ issues: { messages: [{ code: String(error), severity: 0, pointer: "" }] } }));
-    return report.issues.messages;
+    return { messages: report.issues.messages, primitives: report.info?.drawCallCount ?? 0 };
 }
 
 /// Errors in `after`, except missing files, and other messages whose code stands more often in
-/// `after` than in `before`: the surplus, the last ones.
+/// `after` than in `before`, for each primitive: the surplus, the last ones.
 function newMessages(before, after) {
+    const copies = Math.max(1, Math.ceil(after.primitives / Math.max(1, before.primitives)));
     const allowed = new Map();
-    for (const message of before) allowed.set(message.code, (allowed.get(message.code) ?? 0) + 1);
-    return after.filter((message) => {
+    for (const message of before.messages)
+        allowed.set(message.code, (allowed.get(message.code) ?? 0) + copies);
+    return after.messages.filter((message) => {
         if (message.severity === 0 && message.code !== "IO_ERROR") return true;
         const left = allowed.get(message.code) ?? 0;
         allowed.set(message.code, left - 1);
@@ -69,8 +73,8 @@ const options = parseArguments(process.argv.slice(2));
 const validator = loadValidator(options.module);
 let isClean = true;
 for (const { before, after } of options.pairs) {
-    let messages = await messagesOf(validator, after);
-    if (before) messages = newMessages(await messagesOf(validator, before), messages);
+    const report = await reportOn(validator, after);
+    const messages = before ? newMessages(await reportOn(validator, before), report) : report.messages;
     const counts = severities.map((_, severity) =>
         messages.filter((message) => message.severity === severity).length);
     isClean = isClean && counts[0] === 0 && counts[1] === 0;
