@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "arrays.h"
+#include "map_kind.h"
 #include "mesh_type.h"
 #include "relief/mesh/block_compression.h"
 #include "relief/mesh/bump.h"
@@ -144,11 +145,15 @@ py::list py_normal_mip_levels(const py::object& normals) {
 
 // Height maps.
 
-Image heights_of(const py::object& height, const std::string& channel, Report& findings) {
+/// Any channel of alpha may be heights.
+Image heights_of(const py::object& height, const std::string& channel, const Text& assume,
+                 Report& findings) {
     const HeightChannel chosen = value_of<HeightChannel>(channel, "channel");
     Image image = image_of(height, "height", findings);
-    if (image.channels == 1) return image;
-    return without_gil([&] { return height_field(image, chosen); });
+    return without_gil([&] {
+        if (chosen != HeightChannel::alpha) check_kind(image, "height", {MapKind::height}, assume);
+        return image.channels == 1 ? std::move(image) : height_field(image, chosen);
+    });
 }
 
 BumpOptions bump_options(double strength, const Text& kernel, int kernel_radius, const Text& wrap,
@@ -166,13 +171,13 @@ BumpOptions bump_options(double strength, const Text& kernel, int kernel_radius,
 py::array py_bump(const py::object& height, double strength, const Text& kernel, int kernel_radius,
                   const Text& wrap, std::pair<double, double> texel, const Text& arithmetic,
                   const std::string& channel, int bits, const std::string& green,
-                  const std::string& zero_code, const std::string& dither,
+                  const std::string& zero_code, const std::string& dither, const Text& assume,
                   const FindingList& report) {
     const BumpOptions options =
         bump_options(strength, kernel, kernel_radius, wrap, texel, arithmetic);
     const NormalMapFormat format = format_of(bits, green, zero_code, dither);
     Report findings;
-    const Image heights = heights_of(height, channel, findings);
+    const Image heights = heights_of(height, channel, assume, findings);
     Image map =
         without_gil([&] { return normal_map_from_height(heights, options, format, findings); });
     append(findings, report);
@@ -181,19 +186,20 @@ py::array py_bump(const py::object& height, double strength, const Text& kernel,
 
 py::array py_slopes(const py::object& height, double strength, const Text& kernel,
                     int kernel_radius, const Text& wrap, std::pair<double, double> texel,
-                    const Text& arithmetic, const std::string& channel, const FindingList& report) {
+                    const Text& arithmetic, const std::string& channel, const Text& assume,
+                    const FindingList& report) {
     const BumpOptions options =
         bump_options(strength, kernel, kernel_radius, wrap, texel, arithmetic);
     Report findings;
-    const Image heights = heights_of(height, channel, findings);
+    const Image heights = heights_of(height, channel, assume, findings);
     Image slopes = without_gil([&] { return slopes_from_height(heights, options, findings); });
     append(findings, report);
     return array_of(std::move(slopes));
 }
 
 py::dict py_bump_options(const py::object& height, double strength, const Text& kernel,
-                         const Text& wrap, const std::string& channel) {
-    const Image heights = heights_of(height, channel, IgnoredReport());
+                         const Text& wrap, const std::string& channel, const Text& assume) {
+    const Image heights = heights_of(height, channel, assume, IgnoredReport());
     const BumpOptions given = bump_options(strength, kernel, 2, wrap, {1.0, 1.0}, std::nullopt);
     const BumpOptions options = without_gil([&] { return resolve_options(heights, given); });
     py::dict result;
@@ -225,6 +231,11 @@ py::tuple py_heights(const py::object& normals, const std::string& kernel, const
 
 // Normal maps.
 
+/// The kinds of maps whose channels are directions. The first one is that of `assume`.
+std::vector<MapKind> kinds_of_normals() {
+    return {MapKind::normal, MapKind::object_normal, MapKind::world_normal};
+}
+
 py::array py_encode(const py::object& normals, int bits, const std::string& green,
                     const std::string& zero_code, const std::string& dither,
                     const FindingList& report) {
@@ -237,12 +248,13 @@ py::array py_encode(const py::object& normals, int bits, const std::string& gree
 }
 
 py::array py_decode(const py::object& map, const std::string& green, const std::string& zero_code,
-                    bool exact_flat, const FindingList& report) {
+                    bool exact_flat, const Text& assume, const FindingList& report) {
     const Green direction = value_of<Green>(green, "green");
     const FlatCode flat = value_of<FlatCode>(zero_code, "zero_code");
     Report findings;
     const Image image = image_of(map, "map", findings);
     Image normals = without_gil([&] {
+        check_kind(image, "map", kinds_of_normals(), assume);
         return decode_normal_map(image, direction, flat, findings,
                                  exact_flat ? FlatTexels::exact : FlatTexels::as_coded);
     });
@@ -250,12 +262,13 @@ py::array py_decode(const py::object& map, const std::string& green, const std::
     return array_of(std::move(normals));
 }
 
-py::array py_flip_green(const py::object& map, const std::string& zero_code,
+py::array py_flip_green(const py::object& map, const std::string& zero_code, const Text& assume,
                         const FindingList& report) {
     const FlatCode flat = value_of<FlatCode>(zero_code, "zero_code");
     Report findings;
     Image image = image_of(map, "map", findings);
     without_gil([&] {
+        check_kind(image, "map", kinds_of_normals(), assume);
         AxisMapping mapping = same_axes;
         mapping[1].is_negative = true;
         map_axes(image, mapping, flat, findings);
@@ -421,26 +434,27 @@ void add_height_functions(py::module_& module) {
                arg("kernel") = none, arg("kernel_radius") = 2, arg("wrap") = none,
                arg("texel") = texel, arg("arithmetic") = none, arg("channel") = "mean",
                arg("bits") = 16, arg("green") = "up", arg("zero_code") = "127.5",
-               arg("dither") = "none", arg("report") = none,
+               arg("dither") = "none", arg("assume") = none, arg("report") = none,
                "Convert a height map to a normal map of 8 or 16 bits, or 32 (float).\n\n"
                "height: uint8, uint16 or float32 (height, width), or with channels. The result\n"
                "has the shape (height, width, 3). `strength` is the height of the value 1 (white)\n"
                "in texels. Absent options are derived from the map, as `relief-bake bump` does.\n\n"
-               "Raises InvalidInput for wrong shapes and options, and TypeError for wrong types.");
+               "Raises InvalidInput for wrong shapes and options, and for a normal map unless\n"
+               "`assume` is \"height\", and TypeError for wrong types.");
     module.def("slopes", &py_slopes, arg("height"), py::kw_only(), arg("strength") = 16.0,
                arg("kernel") = none, arg("kernel_radius") = 2, arg("wrap") = none,
                arg("texel") = texel, arg("arithmetic") = none, arg("channel") = "mean",
-               arg("report") = none,
+               arg("assume") = none, arg("report") = none,
                "Compute the slopes of a height map: to the right and upwards.\n\n"
                "height and the options are those of bump(); the result: float32 (height, width,\n"
                "2).\n\n"
-               "Raises InvalidInput for wrong shapes and options, and TypeError for wrong types.");
+               "Raises what bump() does.");
     module.def("bump_options", &py_bump_options, arg("height"), py::kw_only(),
                arg("strength") = 16.0, arg("kernel") = none, arg("wrap") = none,
-               arg("channel") = "mean",
+               arg("channel") = "mean", arg("assume") = none,
                "Return the kernel and wrap that bump() derives from a height map.\n\n"
                "The result is a dictionary with kernel, kernel_radius and wrap.\n\n"
-               "Raises InvalidInput for wrong shapes and options, and TypeError for wrong types.");
+               "Raises what bump() does.");
     module.def("heights", &py_heights, arg("normals"), py::kw_only(), arg("kernel") = "central7",
                arg("wrap") = "repeat", arg("max_slope") = 16.0, arg("level") = false,
                arg("report") = none,
@@ -461,16 +475,19 @@ void add_normal_map_functions(py::module_& module) {
                "of the same shape.\n\n"
                "Raises InvalidInput for wrong shapes and options, and TypeError for wrong types.");
     module.def("decode_normals", &py_decode, arg("map"), py::kw_only(), arg("green") = "up",
-               arg("zero_code") = "127.5", arg("exact_flat") = false, arg("report") = none,
+               arg("zero_code") = "127.5", arg("exact_flat") = false, arg("assume") = none,
+               arg("report") = none,
                "Decode a normal map to unit normals, y up: float32 of shape (h, w, 3).\n\n"
                "map: uint8, uint16 or float32 (height, width, 3 or more). `exact_flat` decodes\n"
                "the code of flat texels as exactly flat.\n\n"
-               "Raises InvalidInput for wrong shapes and options, and TypeError for wrong types.");
+               "Raises InvalidInput for wrong shapes and options, and for texels that are clearly\n"
+               "no normals, such as a photograph, unless `assume` is \"normal\"; TypeError for\n"
+               "wrong types.");
     module.def("flip_green", &py_flip_green, arg("map"), py::kw_only(), arg("zero_code") = "127.5",
-               arg("report") = none,
+               arg("assume") = none, arg("report") = none,
                "Convert a stored map between OpenGL's and DirectX's direction of green.\n\n"
                "The result has the type and shape of the map.\n\n"
-               "Raises InvalidInput for wrong shapes and options, and TypeError for wrong types.");
+               "Raises what decode_normals() does.");
     module.def("blend_normals", &py_blend, arg("base"), arg("detail"), py::kw_only(),
                arg("blend") = "reoriented", arg("report") = none,
                "Blend decoded detail normals into decoded base normals.\n\n"

@@ -7,7 +7,9 @@
 #include <tuple>
 
 #include "arrays.h"
+#include "map_kind.h"
 #include "mesh_type.h"
+#include "relief/mesh/map_kind_check.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/renderer.h"
 #include "relief/shade/scene.h"
@@ -35,6 +37,7 @@ float radians(double degrees) {
 struct SceneObject {
     Scene scene;
     std::optional<glm::ivec2> size;
+    bool assumes_normals = false;  ///< The texels of normal maps are not judged.
 };
 
 /// Loads a scene with the background and the environment that relief-view draws.
@@ -53,7 +56,7 @@ SceneObject load(const FileName& file, bool studio, const FindingList& report) {
 
 SceneObject new_scene(const MeshObject& mesh, const Color& diffuse, const Color& specular,
                       float shininess, const Text& material, const py::object& normal_map,
-                      const std::string& green, const std::string& normal_space,
+                      const std::string& green, const std::string& normal_space, const Text& assume,
                       const FindingList& report) {
     Report findings;
     constexpr auto spaces = std::to_array<EnumName<NormalSpace>>(
@@ -70,10 +73,13 @@ SceneObject new_scene(const MeshObject& mesh, const Color& diffuse, const Color&
         surface.shininess = shininess;
     }
     SceneObject result;
+    result.assumes_normals = assume.has_value();
     Scene& scene = result.scene;
     if (!normal_map.is_none()) {
-        scene.images.push_back(
-            {.name = "normal map", .source = Shared(image_of(normal_map, "normal_map", findings))});
+        Image image = image_of(normal_map, "normal_map", findings);
+        without_gil(
+            [&] { check_kind(image, "normal_map", accepted_kinds(TextureSlot::normal), assume); });
+        scene.images.push_back({.name = "normal map", .source = Shared(std::move(image))});
         NormalMap map;
         map.texture.image = 0;
         map.green = value_of<Green>(green, "green");
@@ -184,7 +190,7 @@ py::array py_render(const SceneObject& scene, std::optional<std::pair<int, int>>
     const ViewRequest view{size, samples, output, camera, fov_degrees, backend};
     Report findings;
     Image picture = without_gil([&] { return draw(scene, view, findings); });
-    append(findings, report);
+    append(scene.assumes_normals ? without_assumed_normals(findings) : findings, report);
     return array_of(std::move(picture));
 }
 
@@ -237,11 +243,13 @@ void add_scenes(py::module_& module) {
         .def(py::init(&new_scene), arg("mesh"), py::kw_only(),
              arg("diffuse") = Color(0.8F, 0.8F, 0.8F), arg("specular") = Color(0.0F, 0.0F, 0.0F),
              arg("shininess") = 32.0F, arg("material") = none, arg("normal_map") = none,
-             arg("green") = "up", arg("normal_space") = "tangent", arg("report") = none,
+             arg("green") = "up", arg("normal_space") = "tangent", arg("assume") = none,
+             arg("report") = none,
              "Create a scene of one mesh with a Phong material, or one of the classic table.\n\n"
              "Colors are linear RGB. The normal map is a stored map, as from bump(): uint8,\n"
              "uint16 or float32, (height, width, 3). A mesh without normals gets them.\n\n"
-             "Raises InvalidInput for wrong values, and TypeError for wrong types.")
+             "Raises InvalidInput for wrong values, and for a map whose texels are clearly no\n"
+             "normals unless `assume` is \"normal\", and TypeError for wrong types.")
         .def_static("load", &load, arg("file"), py::kw_only(), arg("studio") = true,
                     arg("report") = none,
                     "Load a model (.glb .gltf .obj .ply .stl .off) or a scene file (.json).\n\n"

@@ -255,6 +255,7 @@ def bump(
     green: Green = "up",
     zero_code: ZeroCode = "127.5",
     dither: Dither = "none",
+    assume: Literal["height"] | None = None,
     report: Report | None = None,
 ) -> Image: ...
 def slopes(
@@ -267,6 +268,7 @@ def slopes(
     texel: tuple[float, float] = (1.0, 1.0),
     arithmetic: Arithmetic | None = None,
     channel: Channel = "mean",
+    assume: Literal["height"] | None = None,
     report: Report | None = None,
 ) -> Floats: ...
 def bump_options(
@@ -276,6 +278,7 @@ def bump_options(
     kernel: KernelOrAuto | None = None,
     wrap: str | None = None,
     channel: Channel = "mean",
+    assume: Literal["height"] | None = None,
 ) -> dict[str, Any]: ...
 def heights(
     normals: FloatArray,
@@ -301,9 +304,16 @@ def decode_normals(
     green: Green = "up",
     zero_code: ZeroCode = "127.5",
     exact_flat: bool = False,
+    assume: Literal["normal"] | None = None,
     report: Report | None = None,
 ) -> Floats: ...
-def flip_green(map: Image, *, zero_code: ZeroCode = "127.5", report: Report | None = None) -> Image: ...
+def flip_green(
+    map: Image,
+    *,
+    zero_code: ZeroCode = "127.5",
+    assume: Literal["normal"] | None = None,
+    report: Report | None = None,
+) -> Image: ...
 def blend_normals(
     base: FloatArray, detail: FloatArray, *, blend: Blend = "reoriented", report: Report | None = None
 ) -> Floats: ...
@@ -388,6 +398,7 @@ class Scene:
         normal_map: Image | None = None,
         green: Green = "up",
         normal_space: Literal["tangent", "object"] = "tangent",
+        assume: Literal["normal"] | None = None,
         report: Report | None = None,
     ) -> None: ...
     def __copy__(self) -> Self: ...

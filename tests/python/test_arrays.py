@@ -430,6 +430,52 @@ class Reports(unittest.TestCase):
             relief.vertex_normals(positions, triangles, report={})
 
 
+class MapKinds(unittest.TestCase):
+    """Arrays whose texels are clearly another kind of map are refused, unless `assume` names the kind."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.photo, _ = relief.read_image(DATA / "bricks-diffuse.png")
+        cls.heights, _ = relief.read_image(DATA / "bricks-height.png")
+        cls.normals = relief.bump(cls.heights, bits=8)
+        positions, texcoords, triangles = grid(5)
+        cls.mesh, _ = relief.with_frames(relief.Mesh(positions, triangles, texcoords=texcoords), tangents="mikktspace")
+
+    def expect_refusal(self, call, message, kind):
+        with self.assertRaises(relief.InvalidInput) as raised:
+            call()
+        self.assertEqual(str(raised.exception), f'{message}; assume="{kind}" reads it anyway)')
+        call(assume=kind)
+        with self.assertRaisesRegex(relief.InvalidInput, "assume"):
+            call(assume="color")
+
+    def test_colors_and_heights_are_no_normals(self):
+        colors = "is not a normal map: its texels are colors, or several masks (give a normal map in tangent space"
+        gray = "is gray, like a height map or a mask, so it is not a normal map (bump() converts height maps"
+        for map_, problem in ((self.photo, colors), (numpy.dstack([self.heights] * 3), gray)):
+            for call in (relief.decode_normals, relief.flip_green):
+                self.expect_refusal(lambda **options: call(map_, **options), f"map: {problem}", "normal")
+            self.expect_refusal(lambda **options: relief.Scene(self.mesh, normal_map=map_, **options),
+                                f"normal_map: {problem}", "normal")
+        report = []
+        relief.Scene(self.mesh, normal_map=self.photo, assume="normal").render(size=(8, 8), report=report)
+        self.assertEqual(report, [])
+
+    def test_normals_are_no_heights(self):
+        message = "height: seems to be a normal map (decode_normals() and heights() convert normal maps"
+        for call in (relief.bump, relief.slopes, relief.bump_options):
+            self.expect_refusal(lambda **options: call(self.normals, **options), message, "height")
+        relief.bump(numpy.dstack([self.normals, self.normals[..., 2]]), channel="alpha", kernel="sobel3")
+        relief.bump(self.photo, kernel="sobel3")  # Colors can be heights: their mean.
+
+    def test_normal_maps_of_all_kinds_are_read(self):
+        object_normals = relief.convert_space(relief.decode_normals(self.normals), self.mesh, to="object")
+        for normals in (relief.decode_normals(self.normals), object_normals):
+            for bits in (8, 16, 32):
+                relief.decode_normals(relief.encode_normals(normals, bits=bits))
+        relief.decode_normals(self.photo[:7, :7])  # Few texels are not judged.
+
+
 class Threads(unittest.TestCase):
     def test_other_threads_run_meanwhile(self):
         positions, texcoords, triangles = grid(700)
