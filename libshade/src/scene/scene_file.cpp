@@ -9,12 +9,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "files.h"
 #include "progress_stage.h"
@@ -23,6 +25,7 @@
 #include "relief/mesh/map_kind_check.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/texture_file.h"
+#include "relief/shade/frame_settings.h"
 #include "scene/scene_parts.h"
 
 namespace relief::shade {
@@ -351,6 +354,38 @@ FrameOptions frame_options(const std::filesystem::path& model, const SceneOption
     return frames;
 }
 
+namespace {
+
+/// Refuses scenes that no camera can show, because squares of their lengths are not finite.
+void check_size(const Scene& scene) {
+    constexpr float max_coordinate = 1e18F;
+    std::vector<float> largest;  // The largest finite coordinate of each mesh.
+    for (const Shared<Mesh>& mesh : scene.meshes) {
+        largest.push_back(0.0F);
+        for (const glm::vec3& position : mesh->positions) {
+            const glm::vec3 size = glm::abs(position);
+            const float coordinate = std::max({size.x, size.y, size.z});
+            if (std::isfinite(coordinate)) largest.back() = std::max(largest.back(), coordinate);
+        }
+    }
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const glm::mat4& matrix = scene.instances[i].world_from_object;
+        const glm::vec3 reach =
+            largest[scene.instances[i].mesh] *
+                (glm::abs(glm::vec3(matrix[0])) + glm::abs(glm::vec3(matrix[1])) +
+                 glm::abs(glm::vec3(matrix[2]))) +
+            glm::abs(glm::vec3(matrix[3]));
+        const float coordinate = std::max({reach.x, reach.y, reach.z});
+        if (coordinate <= max_coordinate) continue;
+        throw InvalidInput(fmt::format(
+            "{}: reaches up to {:.2g} in the world, but pictures show coordinates up to {:g} "
+            "(scale it)",
+            instance_label(scene, i), coordinate, max_coordinate));
+    }
+}
+
+}  // namespace
+
 SceneGraph load_scene_graph(const std::filesystem::path& file, const SceneOptions& options,
                             Report& report) {
     const std::string extension = lower_extension(file);
@@ -368,6 +403,7 @@ SceneGraph load_scene_graph(const std::filesystem::path& file, const SceneOption
         if (clips_exclude_each_other(graph)) graph.clip = 0;
         pose(graph, 0.0);
         validate(graph);
+        check_size(graph.scene);
     } catch (const InvalidInput& error) {
         throw FileError(file, error.what());
     }

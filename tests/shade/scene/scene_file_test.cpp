@@ -79,6 +79,23 @@ TEST(LoadScene, ReadsObjWithItsMaterials) {
     EXPECT_TRUE(scene.directional_lights.empty());
 }
 
+TEST(LoadScene, RefusesSizesThatNoCameraShows) {
+    const test::TemporaryDirectory folder;
+    write_text(folder / "model.obj", "v 0 0 0\nv 1e30 0 0\nv 0 1e30 0\nf 1 2 3\n");
+    try {
+        (void)load_scene(folder / "model.obj");
+        FAIL() << "the model is loaded";
+    } catch (const FileError& error) {
+        EXPECT_EQ(std::string(error.what()),
+                  (folder / "model.obj").string() +
+                      ": instance 'model': reaches up to 1e+30 in the world, but pictures show "
+                      "coordinates up to 1e+18 (scale it)");
+    }
+    write_text(folder / "model.obj", "v 0 0 0\nv 9e17 0 0\nv 0 9e17 0\nf 1 2 3\n");
+    EXPECT_TRUE(is_finite(glm::vec3(
+        framed(load_scene(folder / "model.obj"), 0.6F, 0.35F, 0.7F, 1.0F).world_from_view[3])));
+}
+
 /// A roof of two triangles with normals (1,0,1) and (-1,0,1) and its ridge along y, as STL.
 constexpr const char* roof_stl =
     "solid roof\n"
