@@ -70,6 +70,20 @@ class Interruption(unittest.TestCase):
     def test_unwrapping_ends(self):
         self.expect_end(lambda: relief.unwrap(self.dense), 0.3)
 
+    def test_measuring_texture_coordinates_ends(self):
+        positions, texcoords, triangles = grid(700)
+        large = relief.Mesh(positions, triangles, texcoords=texcoords)
+        for seconds in (0.5, 1.0, 1.5):  # While charts are found and compared, and boxes are sorted.
+            with self.subTest(seconds):
+                self.expect_end(lambda: relief.measure_texcoords(large, (4096, 4096)), seconds)
+
+    def test_readers_end(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "a.jpg"
+            relief.write_image(file, numpy.tile((self.heights // 256).astype("uint8"), (6, 6)))
+            self.expect_end(lambda: relief.read_image(file))
+            self.assertEqual(relief.read_image(file)[0].shape, (6144, 6144))
+
     def test_conversions_end(self):
         positions = numpy.zeros((20_000_000, 3))
         self.expect_end(lambda: relief.triangle_normals(positions, self.dense.triangles))

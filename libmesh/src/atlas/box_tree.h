@@ -11,6 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "progress_stage.h"
+
 namespace relief::detail {
 
 struct PlaneBox {
@@ -44,15 +46,21 @@ class BoxTree {
         };
         std::vector<std::uint64_t> keys(boxes.size());
         for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+            check_cancelled(i);
             const glm::dvec2 middle =
                 0.5 * glm::dvec2(boxes[i].min) + 0.5 * glm::dvec2(boxes[i].max);
             const std::uint64_t code = spread(cell(middle.x, all.min.x, all.max.x)) |
                                        spread(cell(middle.y, all.min.y, all.max.y)) << 1;
             keys[i] = code << 32 | i;
         }
-        std::sort(keys.begin(), keys.end());
+        std::size_t steps = 0;
+        std::sort(keys.begin(), keys.end(), [&](std::uint64_t a, std::uint64_t b) {
+            check_cancelled(++steps);
+            return a < b;
+        });
         std::vector<PlaneBox> level(boxes.size());
         for (std::size_t i = 0; i < keys.size(); ++i) {
+            check_cancelled(i);
             order_[i] = static_cast<std::uint32_t>(keys[i]);
             level[i] = boxes[order_[i]];
         }

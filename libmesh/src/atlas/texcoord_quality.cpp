@@ -41,7 +41,9 @@ PlaneBox box_of(std::span<const glm::vec2> points) {
 FaceCharts connected_parts(const AtlasSurface& surface, std::span<const std::uint8_t> is_finite) {
     FaceCharts charts{std::vector<std::uint32_t>(surface.faces.size(), no_face), 0};
     std::vector<std::uint32_t> open;
+    std::size_t steps = 0;
     for (std::uint32_t first = 0; first < surface.faces.size(); ++first) {
+        check_cancelled(first);
         if (charts.chart[first] != no_face || is_finite[first] == 0) continue;
         const auto number = static_cast<std::uint32_t>(charts.count++);
         charts.chart[first] = number;
@@ -49,6 +51,7 @@ FaceCharts connected_parts(const AtlasSurface& surface, std::span<const std::uin
         while (!open.empty()) {
             const std::uint32_t face = open.back();
             open.pop_back();
+            check_cancelled(++steps);
             for (Corner edge = 3 * face; edge < 3 * face + 3; ++edge) {
                 const Corner other = surface.opposite[edge];
                 if (other == no_corner || charts.chart[other / 3] != no_face ||
@@ -98,7 +101,9 @@ std::vector<std::uint32_t> equal_charts(std::vector<std::vector<MapTriangle>> dr
     const auto is_less = [](const glm::vec2& a, const glm::vec2& b) {
         return a.x != b.x ? a.x < b.x : a.y < b.y;
     };
+    std::size_t steps = 0;
     const auto is_triangle_less = [&](const MapTriangle& a, const MapTriangle& b) {
+        check_cancelled(++steps);
         return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), is_less);
     };
     const auto is_chart_less = [&](const auto& a, const auto& b) {
@@ -261,6 +266,7 @@ class Measurement {
         tiles_.assign(surface_.faces.size(), std::nullopt);
         std::set<int> tiles;
         for (std::uint32_t face = 0; face < surface_.faces.size(); ++face) {
+            check_cancelled(face);
             const MapTriangle stored{texcoord(3 * face), texcoord(3 * face + 1),
                                      texcoord(3 * face + 2)};
             if (!std::all_of(stored.begin(), stored.end(),

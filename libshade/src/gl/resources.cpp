@@ -328,12 +328,16 @@ void check_complete(const Api& api, int width, int height) {
     }
 }
 
+/// The rows of a picture that are read back between two cancellation points.
+constexpr int rows_per_step = 256;
+
 void flip_rows(Image& image) {
     std::visit(
         [&](auto& samples) {
             const auto row =
                 static_cast<std::ptrdiff_t>(image.width) * static_cast<std::ptrdiff_t>(4);
             for (std::ptrdiff_t y = 0; y < image.height / 2; ++y) {
+                if (y % rows_per_step == 0) check_cancelled();
                 const auto top = samples.begin() + y * row;
                 const auto bottom = samples.begin() + (image.height - 1 - y) * row;
                 std::swap_ranges(top, top + row, bottom);
@@ -397,10 +401,17 @@ Image RenderTarget::read(ColorSpace color_space) const {
     }
     const bool is_byte = format_ == ColorFormat::rgba8;
     Image image = make_image(width_, height_, 4, is_byte ? 8 : 32, color_space);
-    void* samples =
-        std::visit([](auto& values) { return static_cast<void*>(values.data()); }, image.samples);
+    auto* const samples = std::visit(
+        [](auto& values) { return reinterpret_cast<std::byte*>(values.data()); }, image.samples);
     api->BindFramebuffer(GL_READ_FRAMEBUFFER, draw_.name());
-    api->ReadPixels(0, 0, width_, height_, GL_RGBA, is_byte ? GL_UNSIGNED_BYTE : GL_FLOAT, samples);
+    const std::size_t row_bytes =
+        static_cast<std::size_t>(width_) * (is_byte ? 4 : 4 * sizeof(float));
+    for (int first = 0; first < height_; first += rows_per_step) {
+        check_cancelled();
+        api->ReadPixels(0, first, width_, std::min(rows_per_step, height_ - first), GL_RGBA,
+                        is_byte ? GL_UNSIGNED_BYTE : GL_FLOAT,
+                        samples + static_cast<std::size_t>(first) * row_bytes);
+    }
     api->BindFramebuffer(GL_FRAMEBUFFER, draw_.name());
     api.check("reading a picture back");
     flip_rows(image);

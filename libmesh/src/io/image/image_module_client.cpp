@@ -293,8 +293,9 @@ Image read_by_module(const std::filesystem::path& file) {
 namespace {
 
 /// Bands consist of whole strips of TIFF and blocks of EXR, for all heights that the module
-/// chooses.
-constexpr std::size_t band_grain = 64;
+/// chooses: the operation can be cancelled after each of them.
+constexpr std::size_t band_grain = 32;
+constexpr std::size_t written_bytes_per_band = std::size_t{1} << 21;
 
 constexpr float max_half = 65504.0F;
 /// Halfway to the next number beyond the range: this and larger values round to infinity.
@@ -330,7 +331,7 @@ class ModuleSink final : public RowSink {
     explicit ModuleSink(const RowSinkPlan& plan)
         : plan_(plan),
           row_bytes_(plan.row_bytes()),
-          band_rows_(std::max<std::size_t>(module_bytes_per_band / row_bytes_ / band_grain, 1) *
+          band_rows_(std::max<std::size_t>(written_bytes_per_band / row_bytes_ / band_grain, 1) *
                      band_grain) {
         const Metadata entries = entries_for(plan.format, plan.metadata);
         std::vector<const char*> keys, values;
