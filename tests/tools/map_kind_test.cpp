@@ -140,6 +140,23 @@ TEST_F(MapKinds, AWrongKindIsAnErrorThatAssumeOverrides) {
     }
 }
 
+TEST_F(MapKinds, TexelsDecideForDdsWhichHoldsNoText) {
+    run("convert stated-normal.png out/normal.dds --format bc5");
+    run("convert photo.png out/photo.dds --kind color --format bc7");
+    for (const Reader& reader : readers) {
+        const bool wants_normals = reader.kind == MapKind::normal;
+        if (reader.line.starts_with("relief-mesh material")) continue;  // glTF has no DDS.
+        refuses(with_file(reader.line, wants_normals ? "out/photo.dds" : "out/normal.dds"),
+                fmt::format("--assume {} reads it anyway)", enum_name(reader.kind)));
+    }
+    run("bump out/normal.dds out/a.png --kernel sobel3 --assume height");
+    // Green is unknown, and stays so.
+    run("convert out/normal.dds out/b.png");
+    EXPECT_FALSE(description_of("out/b.png").green);
+    run("convert out/normal.dds out/c.png --input-green down");
+    EXPECT_EQ(description_of("out/c.png").green, Green::down);
+}
+
 TEST_F(MapKinds, ErrorsNameTheCommandThatConverts) {
     const Image gray = read_image(place_ / "height.png", ImageUse::data);
     Image colors_of_gray = make_image(gray.width, gray.height, 3, 16, ColorSpace::data);

@@ -51,15 +51,18 @@ std::vector<int> available_depths(const BumpRequest& request, const Job& job) {
 constexpr double min_share = 0.01;
 
 /// Checks that the file is a height map. A channel of alpha may be the heights of any map, and a
-/// channel of colors or packed maps confirms that it is one.
+/// channel of colors or packed maps confirms that it is one. Textures of two channels without a
+/// stated kind, as DDS files are, usually have x and y of normals.
 /// \throws FileError
 void check_height_map(const Job& job, const BumpRequest& request, const HeightMapFile& map) {
     if (request.channel == HeightChannel::alpha) return;
     MapInput input = {job.input, {MapKind::height}, map.info().metadata};
     if (request.channel)
         input.accepted.insert(input.accepted.end(), {MapKind::color, MapKind::packed});
+    const int channels = map.info().channels;
     const bool is_gray =
-        map.info().channels < 3 || (!map.is_streamed() && map.map().colored_fraction <= min_share);
+        channels == 1 || (channels == 2 && !is_texture(job.input)) ||
+        (channels > 2 && !map.is_streamed() && map.map().colored_fraction <= min_share);
     if (!check_stated_kind(input, request.assumed) && !is_gray)
         check_judged_kind(input, read_sample(job.input));
 }
