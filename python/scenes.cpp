@@ -37,20 +37,23 @@ float radians(double degrees) {
 struct SceneObject {
     Scene scene;
     std::optional<glm::ivec2> size;
-    bool assumes_normals = false;  ///< The texels of normal maps are not judged.
+    std::vector<MapKind> assumed;  ///< The kinds of `assume`: such findings are left out.
 };
 
 /// Loads a scene with the background and the environment that relief-view draws.
-SceneObject load(const FileName& file, bool studio, const FindingList& report) {
+SceneObject load(const FileName& file, bool studio, const std::vector<std::string>& assume,
+                 const FindingList& report) {
     Report findings;
+    const std::vector<MapKind> assumed = assumed_kinds(assume);
     SceneObject loaded = without_gil([&] {
         SceneGraph graph = load_scene_graph(file, SceneOptions{}, findings);
         const bool is_model = file.extension() != ".json";
+        if (!is_model) check_scene_maps(graph.scene, file, assumed);
         if (is_model) graph.scene.background = default_background;
         if (is_model && studio) (void)add_default_environment(graph.scene);
-        return SceneObject{std::move(graph.scene), graph.picture_size};
+        return SceneObject{std::move(graph.scene), graph.picture_size, assumed};
     });
-    append(findings, report);
+    append(without_assumed(findings, assumed), report);
     return loaded;
 }
 
@@ -73,7 +76,7 @@ SceneObject new_scene(const MeshObject& mesh, const Color& diffuse, const Color&
         surface.shininess = shininess;
     }
     SceneObject result;
-    result.assumes_normals = assume.has_value();
+    if (assume) result.assumed = {MapKind::normal};
     Scene& scene = result.scene;
     if (!normal_map.is_none()) {
         Image image = image_of(normal_map, "normal_map", findings);
@@ -190,7 +193,7 @@ py::array py_render(const SceneObject& scene, std::optional<std::pair<int, int>>
     const ViewRequest view{size, samples, output, camera, fov_degrees, backend};
     Report findings;
     Image picture = without_gil([&] { return draw(scene, view, findings); });
-    append(scene.assumes_normals ? without_assumed_normals(findings) : findings, report);
+    append(without_assumed(findings, scene.assumed), report);
     return array_of(std::move(picture));
 }
 
@@ -250,12 +253,15 @@ void add_scenes(py::module_& module) {
              "uint16 or float32, (height, width, 3). A mesh without normals gets them.\n\n"
              "Raises InvalidInput for wrong values, and for a map whose texels are clearly no\n"
              "normals unless `assume` is \"normal\", and TypeError for wrong types.")
-        .def_static("load", &load, arg("file"), py::kw_only(), arg("studio") = true,
-                    arg("report") = none,
-                    "Load a model (.glb .gltf .obj .ply .stl .off) or a scene file (.json).\n\n"
-                    "Models with a metallic, coated or transmissive material get the built-in\n"
-                    "studio as their environment, unless `studio` is False.\n\n"
-                    "Raises FileError if a file cannot be read, or is damaged.")
+        .def_static(
+            "load", &load, arg("file"), py::kw_only(), arg("studio") = true,
+            arg("assume") = py::tuple(), arg("report") = none,
+            "Load a model (.glb .gltf .obj .ply .stl .off) or a scene file (.json).\n\n"
+            "Models with a metallic, coated or transmissive material get the built-in\n"
+            "studio as their environment, unless `studio` is False. `assume` names kinds of\n"
+            "maps, \"normal\", \"height\" or \"color\", that are not examined.\n\n"
+            "Raises FileError if a file cannot be read, or is damaged, or if a scene file\n"
+            "names a map of the wrong kind; in models, such maps are findings.")
         .def_property(
             "ambient",
             [](const SceneObject& object) {

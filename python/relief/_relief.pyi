@@ -404,7 +404,13 @@ class Scene:
     def __copy__(self) -> Self: ...
     def __deepcopy__(self, memo: dict[int, Any]) -> Self: ...
     @staticmethod
-    def load(file: File, *, studio: bool = True, report: Report | None = None) -> Scene: ...
+    def load(
+        file: File,
+        *,
+        studio: bool = True,
+        assume: Sequence[Literal["normal", "height", "color"]] = (),
+        report: Report | None = None,
+    ) -> Scene: ...
     ambient: tuple[float, float, float]
     background: tuple[float, float, float, float]
     exposure: float

@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import pickle
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -322,7 +323,7 @@ class Refusals(unittest.TestCase):
         self.assertEqual(error_of(lambda: relief.bump(height, kernal="sobel3")),
                          "bump() has no argument 'kernal': did you mean 'kernel'?")
         self.assertEqual(error_of(lambda: relief.Scene.load("a.gltf", zz=1)),
-                         "Scene.load() has no argument 'zz': its arguments are file, studio, report")
+                         "Scene.load() has no argument 'zz': its arguments are file, studio, assume, report")
         self.assertEqual(error_of(lambda: relief.Mesh(self.positions, self.triangles, texcoord=self.texcoords)),
                          "Mesh() has no argument 'texcoord': did you mean 'texcoords'?")
         self.assertEqual(error_of(lambda: relief.Execution(thread=1)),
@@ -411,18 +412,19 @@ class Reports(unittest.TestCase):
             relief.Scene.load(model).render(size=(8, 8), report=report)
         self.assertIn(r"b\xe4r.png", "".join(finding["outcome"] for finding in report))
 
-    def test_maps_of_another_kind_are_findings(self):
+    def test_maps_of_another_kind_in_models_are_findings(self):
         with tempfile.TemporaryDirectory() as folder:
-            scene = pathlib.Path(folder, "scene.json")
-            scene.write_text(json.dumps({
-                "relief_scene": 1,
-                "lights": [{"type": "directional", "direction": [0, 0, -1]}],
-                "nodes": [{"shape": "quad", "material": "photo"}],
-                "materials": {"photo": {"normal_map": str(DATA / "bricks-diffuse.png")}}}))
-            report = []
-            relief.Scene.load(scene, report=report).render(size=(8, 8), report=report)
-        self.assertEqual([finding["kind"] for finding in report],
-                         ["normal map that is not a normal map: its texels are colors, or several masks"])
+            model = pathlib.Path(folder, "a.obj")
+            shutil.copy(DATA / "bricks-diffuse.png", folder)
+            model.with_suffix(".mtl").write_text("newmtl a\nKd 1 1 1\nnorm bricks-diffuse.png\n")
+            model.write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+                             "usemtl a\nf 1/1 2/2 3/3\n")
+            for assume, kinds in (
+                    ([], ["normal map that is not a normal map: its texels are colors, or several masks"]),
+                    (["height", "normal"], [])):
+                report = []
+                relief.Scene.load(model, assume=assume, report=report).render(size=(8, 8), report=report)
+                self.assertEqual([finding["kind"] for finding in report], kinds)
 
     def test_list_is_needed(self):
         positions, _, triangles = grid(5)
@@ -467,6 +469,26 @@ class MapKinds(unittest.TestCase):
             self.expect_refusal(lambda **options: call(self.normals, **options), message, "height")
         relief.bump(numpy.dstack([self.normals, self.normals[..., 2]]), channel="alpha", kernel="sobel3")
         relief.bump(self.photo, kernel="sobel3")  # Colors can be heights: their mean.
+
+    def test_scene_files_are_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = pathlib.Path(folder, "scene.json")
+            scene.write_text(json.dumps({
+                "relief_scene": 1,
+                "lights": [{"type": "directional", "direction": [0, 0, -1]}],
+                "nodes": [{"shape": "quad", "material": "photo"}],
+                "materials": {"photo": {"normal_map": str(DATA / "bricks-diffuse.png")}}}))
+            with self.assertRaises(relief.FileError) as raised:
+                relief.Scene.load(scene)
+            self.assertEqual(str(raised.exception),
+                             f"{scene}: normal map of material 'photo': {DATA / 'bricks-diffuse.png'}: is not a normal "
+                             "map: its texels are colors, or several masks (give a normal map in tangent space; "
+                             'assume=["normal"] reads it anyway)')
+            report = []
+            relief.Scene.load(scene, assume=["normal"], report=report).render(size=(8, 8), report=report)
+            self.assertEqual(report, [])
+            with self.assertRaisesRegex(relief.InvalidInput, "assume"):
+                relief.Scene.load(scene, assume=["occlusion"])
 
     def test_normal_maps_of_all_kinds_are_read(self):
         object_normals = relief.convert_space(relief.decode_normals(self.normals), self.mesh, to="object")
