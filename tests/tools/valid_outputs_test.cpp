@@ -45,6 +45,13 @@ constexpr std::array commands = {
         "relief-bake mesh '{0}' '{0}' out/map.png --size 16 --padding 1 --write-into {1}", false},
 };
 
+/// Commands that write a model of new triangles or coordinates, which take longer.
+constexpr std::array rebuilding_commands = {
+    WritingCommand{"relief-mesh unwrap '{0}' {1} --size 64x64"},
+    WritingCommand{"relief-mesh remesh '{0}' {1} --resolution 16 --shell"},
+    WritingCommand{"relief make '{0}' {1} --size 32 --triangles 100"},
+};
+
 std::vector<fs::path> models_below(const fs::path& folder) {
     std::vector<fs::path> files;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -66,6 +73,8 @@ class ValidOutputs : public testing::Test {
     void run_all(const std::vector<fs::path>& models) {
         for (const fs::path& model : models) {
             for (const WritingCommand& command : commands)
+                run(command, model);
+            for (const WritingCommand& command : rebuilding_commands)
                 run(command, model);
         }
         validate();
