@@ -96,8 +96,9 @@ FrameOptions frame_options(const std::filesystem::path& model, const SceneOption
 ///                requires; statements of MTL without an equivalent (map_Ka, map_Ns, disp, refl,
 ///                scaled or shifted maps); maps whose files state another kind; animations that
 ///                cannot be played; and, for MaterialModel::phong, unreadable textures (mean 1)
-/// \throws FileError as the readers do. A missing image file is reported when it is decoded, and
-///         only visible images are decoded
+/// \throws FileError as the readers do, and for an instance that reaches beyond 1e18 in the world,
+///         which no camera can show. A missing image file is reported when it is decoded, and only
+///         visible images are decoded
 SceneGraph load_scene_graph(const std::filesystem::path& file, const SceneOptions& options,
                             Report& report = IgnoredReport());
 
