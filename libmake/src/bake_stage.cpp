@@ -12,6 +12,7 @@
 #include <memory>
 #include <utility>
 
+#include "asset_ids.h"
 #include "part_groups.h"
 #include "relief/mesh/normal_map.h"
 
@@ -21,15 +22,17 @@ namespace {
 // The materials of the source.
 
 /// Returns the materials that triangles of a mesh have, each once.
-std::vector<const HighMaterial*> used_materials(const Mesh& mesh, const AssetSource& source) {
+std::vector<const HighMaterial*> used_materials(const Mesh& mesh,
+                                                std::span<const HighMaterial> materials,
+                                                const std::optional<HighMaterial>& otherwise) {
     static const HighMaterial white;
-    const HighMaterial* other = source.otherwise ? &*source.otherwise : &white;
+    const HighMaterial* other = otherwise ? &*otherwise : &white;
     if (mesh.material_ranges.empty()) return {other};
     std::vector<const HighMaterial*> used;
     for (const MaterialRange& range : mesh.material_ranges) {
         if (range.triangle_count == 0) continue;
-        const bool is_known = range.material && *range.material < source.materials.size();
-        const HighMaterial* material = is_known ? &source.materials[*range.material] : other;
+        const bool is_known = range.material && *range.material < materials.size();
+        const HighMaterial* material = is_known ? &materials[*range.material] : other;
         if (std::ranges::find(used, material) == used.end()) used.push_back(material);
     }
     return used;
@@ -54,13 +57,10 @@ bool varies(const std::vector<const HighMaterial*>& materials, const HasTexture&
     });
 }
 
-}  // namespace
-
-VaryingProperties varying_properties(const Mesh& mesh, const AssetSource& source) {
-    const std::vector<const HighMaterial*> used = used_materials(mesh, source);
+VaryingProperties varying_of(const std::vector<const HighMaterial*>& used, bool has_colors) {
     VaryingProperties result;
     result.color =
-        !mesh.colors.empty() ||
+        has_colors ||
         varies(
             used, [](const HighMaterial& material) { return material.color_texture.has_value(); },
             [](const HighMaterial& material) {
@@ -80,6 +80,13 @@ VaryingProperties varying_properties(const Mesh& mesh, const AssetSource& source
         },
         [](const HighMaterial& material) { return material.emission; });
     return result;
+}
+
+}  // namespace
+
+VaryingProperties varying_properties(const Mesh& mesh, const AssetSource& source) {
+    return varying_of(used_materials(mesh, source.materials, source.otherwise),
+                      !mesh.colors.empty());
 }
 
 namespace {
@@ -262,21 +269,26 @@ BakeLayers hemispheres_of(const BakeLayers& layers) {
 class MapBaker {
   public:
     MapBaker(const AssetSource& source, const detail::BakedSource& baked,
-             const AssetOptions& options, Asset& asset)
+             const AssetOptions& options, Asset& asset, Report& report)
         : source_(source),
           baked_(baked),
           high_(baked.high),
           options_(options),
-          varying_(varying_properties(high_, source)),
+          drawn_(drawn_materials(high_, source, baked.alpha, baked.low_alpha, report)),
+          used_(used_materials(high_, drawn_.materials, source.otherwise)),
+          varying_(varying_of(used_, !high_.colors.empty())),
           asset_(asset) {}
 
     void bake(Report& report);
 
   private:
     [[nodiscard]] BakeOptions bake_options() const;
-    [[nodiscard]] Baker baker_of_parts(BakeOptions options, Report& report);
+    [[nodiscard]] bool is_transparent() const;
+    [[nodiscard]] bool find_groups();
+    [[nodiscard]] Baker baker_of_groups(BakeOptions options, Report& report);
     [[nodiscard]] glm::ivec2 hemisphere_size() const;
     void set_factors();
+    void set_draw_modes();
     void add_layers(const Baker& baker, const LayerBounds& bounds);
     void bake_surface(const Baker& baker, const LayerBounds& bounds, Report& report);
     [[nodiscard]] std::optional<Image> bake_hemispheres(const Baker& baker, Report& report);
@@ -287,8 +299,11 @@ class MapBaker {
     const AssetSource& source_;
     const detail::BakedSource& baked_;
     const Mesh& high_;
-    detail::BakedParts parts_;  ///< If they are matched.
+    detail::RayGroups groups_;  ///< If not all rays hit all of the dense mesh.
+    detail::BakedParts parts_;  ///< Of these groups.
     const AssetOptions& options_;
+    detail::DrawnMaterials drawn_;
+    std::vector<const HighMaterial*> used_;  ///< Of them.
     VaryingProperties varying_;
     Asset& asset_;
     /// The layers of the first pass, absent if they are not needed.
@@ -304,7 +319,7 @@ BakeOptions MapBaker::bake_options() const {
     baking.map.padding = options_.padding;
     BakeLayers& layers = baking.map.layers;
     layers.colors = varying_.color;
-    layers.opacity = varying_.color && source_.shared.alpha_mode != AlphaMode::opaque;
+    layers.opacity = varying_.color && is_transparent();
     layers.surface = varying_.surface || varying_.occlusion;
     layers.emission = varying_.emission;
     const auto has = [&](LayerKind kind) {
@@ -321,9 +336,10 @@ BakeOptions MapBaker::bake_options() const {
     if (has(LayerKind::bent_normal)) layers.bent_normals = {.rays = rays};
     if (has(LayerKind::thickness)) layers.thickness = {.rays = rays};
     baking.map_count = layers.occlusion || layers.bent_normals || layers.thickness ? 2 : 1;
-    baking.materials.push_back({&high_, source_.materials, {}, source_.otherwise});
+    baking.materials.push_back({&high_, drawn_.materials, {}, source_.otherwise});
     if (layers.ids)
-        baking.ids.push_back({&high_, names_by_material(high_, source_.material_names)});
+        baking.ids.push_back(
+            {&high_, detail::asset_ids(high_, baked_.high_parts, source_.material_names)});
     return baking;
 }
 
@@ -347,7 +363,11 @@ void MapBaker::set_factors() {
     GltfMaterial& material = asset_.material;
     material = source_.shared;
     MetallicRoughness& surface = *material.metallic_roughness;
-    const HighMaterial& first = *used_materials(high_, source_).front();
+    const HighMaterial& first = *used_.front();
+    const DrawMode& mode = drawn_.modes.front();
+    material.alpha_mode = mode.alpha_mode;
+    material.alpha_cutoff = mode.alpha_cutoff;
+    material.double_sided = mode.double_sided;
     surface.base_color = glm::vec3(1.0F);
     material.opacity = 1.0F;
     if (!varying_.color) {
@@ -458,7 +478,6 @@ void MapBaker::store_colors(LayerMap& map, Report& report) {
     Image& image = map.image();
     if (image.channels == 4 && map.min_code(alpha_channel) == 255) {
         report.add("transparent source that is opaque everywhere", "source", 0, "is opaque");
-        material.alpha_mode = AlphaMode::opaque;
         image = first_channels(image, 3);
     }
     if (image.channels == 3 && map.is_uniform()) {
@@ -501,15 +520,35 @@ void MapBaker::store_emission(LayerMap& map, double strength) {
     asset_.emission_map = std::move(map.image());
 }
 
-/// Returns a baker for which each part of the asset sees only its part of the source.
-Baker MapBaker::baker_of_parts(BakeOptions options, Report& report) {
-    parts_ = detail::divided(high_, baked_.high_parts, baked_.low_parts);
+bool MapBaker::is_transparent() const {
+    return std::ranges::any_of(
+        drawn_.modes, [](const DrawMode& mode) { return mode.alpha_mode != AlphaMode::opaque; });
+}
+
+/// Finds groups of triangles whose rays hit only triangles of the same group. \return false if
+/// all rays hit all of the dense mesh
+bool MapBaker::find_groups() {
+    const bool has_parts = asset_.parts.is_matched;
+    const std::vector<AlphaMode> high_alpha = detail::alpha_modes_of(high_, baked_.alpha);
+    groups_ = detail::ray_groups(
+        has_parts ? baked_.high_parts : NamedParts{},
+        has_parts ? baked_.low_parts : decltype(baked_.low_parts){}, high_alpha,
+        options_.match == PartMatching::all ? decltype(baked_.low_alpha){} : baked_.low_alpha);
+    return groups_.names.size() > 1;
+}
+
+/// Returns a baker for which each group of the asset sees only its group of the source.
+Baker MapBaker::baker_of_groups(BakeOptions options, Report& report) {
+    parts_ = detail::divided(high_, groups_.of_high, groups_.of_low, groups_.names);
     options.materials.clear();
-    options.ids.clear();
-    for (const Mesh& mesh : parts_.meshes) {
-        options.materials.push_back({&mesh, source_.materials, {}, source_.otherwise});
-        if (options.map.layers.ids)
-            options.ids.push_back({&mesh, names_by_material(mesh, source_.material_names)});
+    for (const Mesh& mesh : parts_.meshes)
+        options.materials.push_back({&mesh, drawn_.materials, {}, source_.otherwise});
+    if (options.map.layers.ids) {
+        std::vector<std::vector<NamedTriangles>> ids =
+            detail::divided(options.ids.front().triangles, groups_.of_high, groups_.names.size());
+        options.ids.clear();
+        for (std::size_t i = 0; i < ids.size(); ++i)
+            options.ids.push_back({&parts_.meshes[i], std::move(ids[i])});
     }
     options.parts_occlude = true;
     // The decimation may have left little of a small part.
@@ -517,9 +556,26 @@ Baker MapBaker::baker_of_parts(BakeOptions options, Report& report) {
     return {parts_.parts, asset_.mesh, options, report};
 }
 
+/// Gives the triangles of the asset their materials.
+void MapBaker::set_draw_modes() {
+    GltfMaterial& material = asset_.material;
+    const bool is_opaque = !asset_.color_map && material.opacity >= 1.0F;
+    if (is_opaque || (asset_.color_map && asset_.color_map->channels == 3)) {
+        material.alpha_mode = AlphaMode::opaque;
+        for (DrawMode& mode : drawn_.modes)
+            mode.alpha_mode = AlphaMode::opaque;
+        material.double_sided = std::ranges::any_of(
+            drawn_.modes, [](const DrawMode& mode) { return mode.double_sided; });
+        return;
+    }
+    if (drawn_.modes.size() < 2) return;
+    asset_.draw_modes = drawn_.modes;
+    asset_.mesh.material_ranges = detail::ranges_of(baked_.low_alpha, drawn_.modes);
+}
+
 void MapBaker::bake(Report& report) {
-    const Baker baker = asset_.parts.is_matched
-                            ? baker_of_parts(bake_options(), report)
+    const Baker baker = find_groups()
+                            ? baker_of_groups(bake_options(), report)
                             : Baker(std::span(&high_, 1), asset_.mesh, bake_options(), report);
     asset_.agreement = baker.agreement();
     set_factors();
@@ -538,15 +594,14 @@ void MapBaker::bake(Report& report) {
     if (emission_) store_emission(*emission_, emission_->coding().range);
     for (LayerMap& layer : further_)
         asset_.layers.push_back({layer.coding(), std::move(layer.image())});
-    GltfMaterial& material = asset_.material;
-    if (!asset_.color_map && material.opacity >= 1.0F) material.alpha_mode = AlphaMode::opaque;
+    set_draw_modes();
 }
 
 }  // namespace
 
 void detail::bake_maps(const AssetSource& source, const BakedSource& baked,
                        const AssetOptions& options, Asset& asset, Report& report) {
-    MapBaker(source, baked, options, asset).bake(report);
+    MapBaker(source, baked, options, asset, report).bake(report);
 }
 
 }  // namespace relief::make

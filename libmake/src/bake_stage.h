@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "draw_modes.h"
 #include "relief/make/asset.h"
 
 namespace relief::make::detail {
@@ -15,6 +16,9 @@ struct BakedSource {
     const Mesh& high;  ///< With the materials of the source.
     const NamedParts& high_parts;
     std::span<const std::uint32_t> low_parts;  ///< By triangle of the asset's mesh.
+    const SourceAlpha& alpha;                  ///< Of the source.
+    /// By triangle of the asset's mesh; empty: not known, or all the same.
+    std::span<const AlphaMode> low_alpha;
 };
 
 /// Casts rays from the mesh of an asset onto the dense mesh. The asset gets its maps, the factors

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "bake_stage.h"
+#include "draw_modes.h"
 #include "geometry/triangle_stacks.h"
 #include "geometry/weld.h"
 #include "part_groups.h"
@@ -117,8 +118,11 @@ class Maker {
     void begin(const AssetStart& start);
     [[nodiscard]] const Mesh& replaceable() const;
     [[nodiscard]] const Mesh& dense_surface() const;
+    [[nodiscard]] Mesh replaceable_shape() const;
     void find_parts(const FramedMesh& repaired);
     [[nodiscard]] std::vector<std::uint32_t> parts_of_dense_surface() const;
+    [[nodiscard]] std::vector<AlphaMode> alpha_of_replaceable() const;
+    [[nodiscard]] std::vector<AlphaMode> alpha_of_dense_surface() const;
     [[nodiscard]] std::string reason_for_one_part() const;
     void match_parts(Report& report);
     void decimate(Report& report);
@@ -130,10 +134,13 @@ class Maker {
 
     const AssetSource& source_;
     const AssetOptions& options_;
+    detail::SourceAlpha alpha_;
     Mesh high_;
     NamedParts high_parts_;  ///< Of `high_`, with a name for each number.
     /// The part of each triangle of the asset's mesh; empty: not known.
     std::vector<std::uint32_t> low_parts_;
+    /// The alpha of each triangle of the asset's mesh; empty: not known, or all the same.
+    std::vector<AlphaMode> low_alpha_;
     std::string unmatched_;       ///< Names of parts of AssetStart that the source does not have.
     std::optional<Mesh> closed_;  ///< The closed surface that replaces the triangles of `high_`.
     detail::RemeshEvidence evidence_;
@@ -159,6 +166,7 @@ RepairOptions with_sides_together(RepairOptions options) {
 
 void Maker::repair(Report& report) {
     validate(source_.mesh);
+    alpha_ = detail::source_alpha(source_, report);
     FramedMesh result;
     if (options_.repair) {
         result = repaired(source_.mesh, with_sides_together(*options_.repair), report);
@@ -190,7 +198,7 @@ void Maker::repair(Report& report) {
     if (high_.normals.empty()) {
         FrameOptions frames;
         frames.normals = NormalWeight::angle;
-        frames.crease_angle = options_.crease_angle;
+        frames.crease_angle = source_.crease_angle ? source_.crease_angle : options_.crease_angle;
         frames.tangents = TangentMethod::keep;
         high_ = with_frames(std::move(high_), frames, report).mesh;
     }
@@ -221,6 +229,38 @@ std::vector<std::uint32_t> Maker::parts_of_dense_surface() const {
     return low_parts_;
 }
 
+std::vector<std::uint32_t> numbers_of(std::span<const AlphaMode> modes) {
+    std::vector<std::uint32_t> numbers;
+    numbers.reserve(modes.size());
+    for (const AlphaMode mode : modes)
+        numbers.push_back(static_cast<std::uint32_t>(mode));
+    return numbers;
+}
+
+/// The inverse, from ranges of triangles of one mode.
+std::vector<AlphaMode> modes_of_ranges(const Mesh& mesh) {
+    std::vector<AlphaMode> modes;
+    modes.reserve(mesh.triangles.size());
+    for (const std::uint32_t number : detail::parts_of_ranges(mesh))
+        modes.push_back(static_cast<AlphaMode>(number));
+    return modes;
+}
+
+/// Returns the alpha of the triangles that a closed surface may replace.
+std::vector<AlphaMode> Maker::alpha_of_replaceable() const {
+    if (!options_.start || (options_.start->is_repaired_source &&
+                            options_.start->mesh.triangles.size() == high_.triangles.size()))
+        return detail::alpha_modes_of(high_, alpha_);
+    return low_alpha_;
+}
+
+/// Returns the alpha of the triangles to decimate; empty if it is not known, or all the same.
+std::vector<AlphaMode> Maker::alpha_of_dense_surface() const {
+    if (!closed_) return alpha_of_replaceable();
+    std::vector<AlphaMode> modes = modes_of_ranges(*closed_);
+    return detail::is_mixed(modes) ? modes : std::vector<AlphaMode>{};
+}
+
 /// Returns why each part of the asset sees all parts of the source; empty if it sees its own.
 std::string Maker::reason_for_one_part() const {
     if (options_.match == PartMatching::all) return "it was requested";
@@ -238,7 +278,6 @@ void Maker::match_parts(Report& report) {
     PartDecision& decision = asset_.parts;
     decision.reason = reason_for_one_part();
     decision.is_matched = decision.reason.empty();
-    if (!low_parts_.empty()) decision.of_asset = {high_parts_.names, low_parts_};
     if (!decision.is_matched) {
         if (options_.match == PartMatching::name && !unmatched_.empty())
             throw InvalidInput("parts cannot be matched by name: " + decision.reason);
@@ -269,7 +308,7 @@ RemeshOptions Maker::grid() const {
 /// Replaces the triangles to decimate.
 void Maker::remesh(Report& report) {
     RemeshDecision& decision = asset_.remesh.emplace();
-    closed_ = detail::closed_surface(replaceable(), grid(), decision, report);
+    closed_ = detail::closed_surface(replaceable_shape(), grid(), decision, report);
     decision.is_remeshed = true;
     decision.reason = "it was requested";
 }
@@ -279,7 +318,25 @@ void Maker::remesh(Report& report) {
 void Maker::judge(Report& report) {
     RemeshDecision& decision = asset_.remesh.emplace();
     decision.criteria = detail::remesh_criteria(replaceable(), evidence_);
-    closed_ = detail::better_surface(replaceable(), grid(), decision, report);
+    const bool is_exceeded = std::ranges::any_of(decision.criteria, &RemeshCriterion::is_exceeded);
+    closed_ = detail::better_surface(is_exceeded ? replaceable_shape() : Mesh{}, grid(), decision,
+                                     report);
+}
+
+/// Sorts triangles by a number, which becomes their material.
+void sort_by(Mesh& mesh, std::span<const std::uint32_t> numbers) {
+    if (numbers.empty()) return;
+    std::vector<std::uint32_t> order(numbers.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return numbers[i]; });
+    std::vector<glm::uvec3> triangles;
+    std::vector<std::uint32_t> sorted;
+    for (const std::uint32_t i : order) {
+        triangles.push_back(mesh.triangles[i]);
+        sorted.push_back(numbers[i]);
+    }
+    mesh.triangles = std::move(triangles);
+    mesh.material_ranges = detail::ranges_of(sorted);
 }
 
 /// Moves the sides of doubled walls apart, so that rays meet the right one and each side has charts
@@ -287,10 +344,16 @@ void Maker::judge(Report& report) {
 void Maker::separate_sides(Report& report) {
     Report known;  // The repair has counted the others.
     FramedMesh high = repaired(high_, *options_.repair, known);
+    if (!low_alpha_.empty())
+        asset_.mesh.material_ranges = detail::ranges_of(numbers_of(low_alpha_));
     FramedMesh low = repaired(asset_.mesh, *options_.repair, known);
     if (!high_parts_.names.empty())
         high_parts_.part_of = detail::parts_of_copy(high_, high_parts_.part_of, high);
     if (!low_parts_.empty()) low_parts_ = detail::parts_of_copy(asset_.mesh, low_parts_, low);
+    if (!low_alpha_.empty()) {
+        low_alpha_ = modes_of_ranges(low.mesh);
+        low.mesh.material_ranges.clear();
+    }
     high_ = std::move(high.mesh);
     asset_.mesh = std::move(low.mesh);
     report.add("surface with doubled walls", "mesh", 0,
@@ -300,6 +363,15 @@ void Maker::separate_sides(Report& report) {
 /// Returns the triangles that a closed surface may replace.
 const Mesh& Maker::replaceable() const {
     return options_.start ? options_.start->mesh : high_;
+}
+
+/// Returns its shape, with a material range for each alpha mode.
+Mesh Maker::replaceable_shape() const {
+    Mesh shape;
+    shape.positions = replaceable().positions;
+    shape.triangles = replaceable().triangles;
+    sort_by(shape, numbers_of(alpha_of_replaceable()));
+    return shape;
 }
 
 /// Returns the triangles to decimate.
@@ -329,6 +401,13 @@ void Maker::begin(const AssetStart& start) {
                 low_parts_.push_back(numbers[part]);
         }
     }
+    low_alpha_ = start.alpha_modes;
+    const auto is_of_source = [&](AlphaMode mode) {
+        return std::ranges::find(alpha_.of_material, mode) != alpha_.of_material.end() ||
+               mode == AlphaMode::opaque;
+    };
+    if (!detail::is_mixed(low_alpha_) || !std::ranges::all_of(low_alpha_, is_of_source))
+        low_alpha_.clear();
     if (start.stage == "remesh" || start.stage == "decimate") return;
     asset_.mesh = start.mesh;
     asset_.mesh.name = source_.name;
@@ -350,9 +429,11 @@ void Maker::decimate(Report& report) {
     const Mesh& dense = dense_surface();
     surface.positions = dense.positions;
     surface.triangles = dense.triangles;
-    // Parts share no vertex, so that borders between materials do not limit the decimation.
+    // Parts share no vertex, so that borders between them do not limit the decimation. Those
+    // between alpha modes must stay.
     const std::vector<std::uint32_t> parts = parts_of_dense_surface();
-    surface.material_ranges = detail::ranges_of(parts);
+    const std::vector<AlphaMode> alpha = alpha_of_dense_surface();
+    sort_by(surface, detail::pairs_of(parts, alpha));
     if (options_.keep_texcoords) {
         surface.texcoords = dense.texcoords;
         if (surface.texcoords.empty())
@@ -372,7 +453,12 @@ void Maker::decimate(Report& report) {
     asset_.mesh = decimated(surface, limits, report).mesh;
     if (asset_.mesh.triangles.empty()) throw InvalidInput("no triangle is left after decimation");
     low_parts_.clear();
-    if (!parts.empty()) low_parts_ = detail::parts_of_ranges(asset_.mesh);
+    low_alpha_.clear();
+    for (const std::uint32_t pair : detail::parts_of_ranges(asset_.mesh)) {
+        if (!parts.empty()) low_parts_.push_back(pair / detail::alpha_count);
+        if (!alpha.empty())
+            low_alpha_.push_back(static_cast<AlphaMode>(pair % detail::alpha_count));
+    }
     asset_.mesh.material_ranges.clear();
     const bool is_remeshed = closed_ || (options_.start && options_.start->is_remeshed);
     if (options_.repair && !is_remeshed && report.count("double-sided triangle") > 0)
@@ -405,7 +491,8 @@ void Maker::compute_frames(Report& report) {
 
 void Maker::bake(Report& report) {
     match_parts(report);
-    detail::bake_maps(source_, {high_, high_parts_, low_parts_}, options_, asset_, report);
+    detail::bake_maps(source_, {high_, high_parts_, low_parts_, alpha_, low_alpha_}, options_,
+                      asset_, report);
 }
 
 void Maker::run_stage(const std::string& name, void (Maker::*work)(Report&)) {
@@ -420,10 +507,16 @@ void Maker::run_stage(const std::string& name, void (Maker::*work)(Report&)) {
     }
     if (!options_.take_mesh || name == "bake") return;
     if (name == "remesh") {
-        if (closed_) options_.take_mesh(name, *closed_);
-        return;
+        if (closed_) options_.take_mesh(name, {*closed_, {}, alpha_of_dense_surface()});
+    } else if (name == "repair") {
+        options_.take_mesh(name, {high_, high_parts_, detail::alpha_modes_of(high_, alpha_)});
+    } else {
+        const bool has_parts = !low_parts_.empty();
+        options_.take_mesh(
+            name,
+            {asset_.mesh, has_parts ? NamedParts{high_parts_.names, low_parts_} : NamedParts{},
+             low_alpha_});
     }
-    options_.take_mesh(name, name == "repair" ? high_ : asset_.mesh);
 }
 
 /// Decimates and unwraps.

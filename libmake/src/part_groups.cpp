@@ -82,22 +82,149 @@ std::vector<std::uint32_t> parts_of_ranges(const Mesh& mesh) {
     return part_of;
 }
 
-BakedParts divided(const Mesh& high, const NamedParts& high_parts,
-                   std::span<const std::uint32_t> low_parts) {
-    const std::size_t count = high_parts.names.size();
-    std::vector<std::vector<std::uint32_t>> triangles(count);
-    for (std::uint32_t i = 0; i < high_parts.part_of.size(); ++i)
-        triangles[high_parts.part_of[i]].push_back(i);
-    BakedParts result;
-    result.meshes.reserve(count);
-    result.parts.resize(count);
-    for (std::size_t part = 0; part < count; ++part) {
-        result.meshes.push_back(part_of(high, triangles[part]));
-        result.parts[part].high = std::span(&result.meshes[part], 1);
-        result.parts[part].name = high_parts.names[part];
+std::vector<std::uint32_t> pairs_of(std::span<const std::uint32_t> parts,
+                                    std::span<const AlphaMode> alpha) {
+    std::vector<std::uint32_t> pairs(std::max(parts.size(), alpha.size()), 0);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if (!parts.empty()) pairs[i] += alpha_count * parts[i];
+        if (!alpha.empty()) pairs[i] += static_cast<std::uint32_t>(alpha[i]);
     }
-    for (std::uint32_t i = 0; i < low_parts.size(); ++i)
-        result.parts[low_parts[i]].triangles.push_back(i);
+    return pairs;
+}
+
+namespace {
+
+std::string pair_name(std::uint32_t pair, const NamedParts& parts, bool has_alpha) {
+    const std::string part = parts.names.empty() ? "" : parts.names[pair / alpha_count];
+    if (!has_alpha) return part;
+    const auto mode = std::string(enum_name(static_cast<AlphaMode>(pair % alpha_count)));
+    return part.empty() ? mode : part + " (" + mode + ")";
+}
+
+}  // namespace
+
+RayGroups ray_groups(const NamedParts& high_parts, std::span<const std::uint32_t> low_parts,
+                     std::span<const AlphaMode> high_alpha, std::span<const AlphaMode> low_alpha) {
+    const std::vector<std::uint32_t> none_of_high;
+    const bool has_parts = !high_parts.names.empty() && !low_parts.empty();
+    const bool has_alpha = !high_alpha.empty() && !low_alpha.empty();
+    RayGroups groups;
+    if (!has_parts && !has_alpha) return groups;
+    const auto numbered = [&](bool with_alpha) {
+        groups.of_high =
+            pairs_of(has_parts ? std::span(high_parts.part_of) : std::span(none_of_high),
+                     with_alpha ? high_alpha : std::span<const AlphaMode>());
+        groups.of_low = pairs_of(has_parts ? low_parts : std::span<const std::uint32_t>(),
+                                 with_alpha ? low_alpha : std::span<const AlphaMode>());
+        std::map<std::uint32_t, std::uint32_t> number_of;
+        for (const std::uint32_t pair : groups.of_high)
+            number_of.try_emplace(pair, 0);
+        groups.names.clear();
+        for (auto& [pair, number] : number_of) {
+            number = static_cast<std::uint32_t>(groups.names.size());
+            groups.names.push_back(pair_name(pair, high_parts, with_alpha));
+        }
+        for (std::uint32_t& pair : groups.of_high)
+            pair = number_of.at(pair);
+        for (std::uint32_t& pair : groups.of_low) {
+            const auto found = number_of.find(pair);
+            if (found == number_of.end()) return false;
+            pair = found->second;
+        }
+        return true;
+    };
+    if (has_alpha && numbered(true)) return groups;
+    if (!has_parts || !numbered(false)) return {};
+    return groups;
+}
+
+KeyedVertices::KeyedVertices(const Mesh& mesh, std::span<const std::uint32_t> keys,
+                             std::size_t count)
+    : counts_(count, 0) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;  // Of vertices and keys.
+    std::vector<std::uint32_t> last(mesh.positions.size(), none);
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        for (int corner = 0; corner < 3; ++corner) {
+            const std::uint32_t vertex = mesh.triangles[i][corner];
+            if (last[vertex] == keys[i]) continue;
+            last[vertex] = keys[i];
+            pairs.emplace_back(vertex, keys[i]);
+        }
+    }
+    std::ranges::sort(pairs);
+    pairs.erase(std::ranges::unique(pairs).begin(), pairs.end());
+    first_.assign(mesh.positions.size() + 1, 0);
+    uses_.reserve(pairs.size());
+    for (const auto& [vertex, key] : pairs) {
+        ++first_[vertex + 1];
+        uses_.push_back({key, counts_[key]++});
+    }
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+        first_[v + 1] += first_[v];
+}
+
+std::uint32_t KeyedVertices::number(std::uint32_t vertex, std::uint32_t key) const {
+    return std::ranges::find(of(vertex), key, &Use::key)->number;
+}
+
+std::vector<Mesh> divided(const Mesh& mesh, std::span<const std::uint32_t> keys,
+                          std::size_t count) {
+    const KeyedVertices vertices(mesh, keys, count);
+    std::vector<Mesh> parts(count);
+    const auto divide = [&](auto attribute) {
+        const auto& values = mesh.*attribute;
+        if (values.empty()) return;
+        for (std::uint32_t key = 0; key < count; ++key)
+            (parts[key].*attribute).reserve(vertices.vertex_count(key));
+        for (std::uint32_t v = 0; v < values.size(); ++v) {
+            for (const KeyedVertices::Use& use : vertices.of(v))
+                (parts[use.key].*attribute).push_back(values[v]);
+        }
+    };
+    divide(&Mesh::positions);
+    divide(&Mesh::normals);
+    divide(&Mesh::texcoords);
+    divide(&Mesh::texcoords_2);
+    divide(&Mesh::tangents);
+    divide(&Mesh::colors);
+    const auto add = [&](std::uint32_t triangle) {
+        const glm::uvec3& t = mesh.triangles[triangle];
+        const std::uint32_t key = keys[triangle];
+        parts[key].triangles.emplace_back(vertices.number(t.x, key), vertices.number(t.y, key),
+                                          vertices.number(t.z, key));
+    };
+    if (mesh.material_ranges.empty()) {
+        for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
+            add(i);
+    }
+    for (const MaterialRange& range : mesh.material_ranges) {
+        for (std::uint32_t i = 0; i < range.triangle_count; ++i) {
+            const std::uint32_t triangle = range.first_triangle + i;
+            Mesh& part = parts[keys[triangle]];
+            std::vector<MaterialRange>& ranges = part.material_ranges;
+            if (ranges.empty() || ranges.back().material != range.material)
+                ranges.push_back(
+                    {static_cast<std::uint32_t>(part.triangles.size()), 0, range.material});
+            ++ranges.back().triangle_count;
+            add(triangle);
+        }
+    }
+    for (Mesh& part : parts)
+        part.name = mesh.name;
+    return parts;
+}
+
+BakedParts divided(const Mesh& high, std::span<const std::uint32_t> high_keys,
+                   std::span<const std::uint32_t> low_keys, std::span<const std::string> names) {
+    BakedParts result;
+    result.meshes = divided(high, high_keys, names.size());
+    result.parts.resize(names.size());
+    for (std::size_t part = 0; part < names.size(); ++part) {
+        result.parts[part].high = std::span(&result.meshes[part], 1);
+        result.parts[part].name = names[part];
+    }
+    for (std::uint32_t i = 0; i < low_keys.size(); ++i)
+        result.parts[low_keys[i]].triangles.push_back(i);
     std::erase_if(result.parts, [](const BakePart& part) { return part.triangles.empty(); });
     return result;
 }

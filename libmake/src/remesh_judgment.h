@@ -38,9 +38,9 @@ std::vector<RemeshCriterion> remesh_criteria(const Mesh& mesh, const RemeshEvide
 
 /// Computes a closed surface around a mesh, and its distance.
 ///
-/// \param mesh  valid (mesh.h), with triangles of finite positions
+/// \param mesh  valid (mesh.h), positions and triangles of finite positions, maybe with materials
 /// \param decision  gets the triangles, the cell and the distance
-/// \return positions and triangles
+/// \return positions and triangles, with these materials
 /// \throws InvalidInput as remeshed()
 Mesh closed_surface(const Mesh& mesh, const RemeshOptions& options, RemeshDecision& decision,
                     Report& report);

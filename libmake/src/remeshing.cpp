@@ -275,15 +275,12 @@ std::vector<RemeshCriterion> remesh_criteria(const Mesh& mesh, const RemeshEvide
 
 Mesh closed_surface(const Mesh& mesh, const RemeshOptions& options, RemeshDecision& decision,
                     Report& report) {
-    Mesh shape;
-    shape.positions = mesh.positions;
-    shape.triangles = mesh.triangles;
-    Mesh surface = remeshed(shape, options, report);
-    const Bounds bounds = bounds_of(shape);
+    Mesh surface = remeshed(mesh, options, report);
+    const Bounds bounds = bounds_of(mesh);
     const glm::dvec3 size = glm::dvec3(bounds.max) - glm::dvec3(bounds.min);
     decision.cell = std::max({size.x, size.y, size.z}) / options.resolution;
     decision.triangles = surface.triangles.size();
-    decision.distance = distance_of(shape, surface);
+    decision.distance = distance_of(mesh, surface);
     return surface;
 }
 

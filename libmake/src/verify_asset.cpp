@@ -29,11 +29,12 @@ void add_of_level(const Finding& finding, Report& problems) {
     problems.add(theirs);
 }
 
-void check_meshes(const CheckedModel& checked, Report& problems) {
+/// \param materials  the number of primitives of the finest mesh
+void check_meshes(const CheckedModel& checked, std::size_t materials, Report& problems) {
     for (const CheckedPart& part : checked.parts) {
         const auto index = static_cast<std::size_t>(&part - checked.parts.data());
         for (const Finding& finding : part.problems.findings())
-            index == 0 ? problems.add(finding) : add_of_level(finding, problems);
+            index < materials ? problems.add(finding) : add_of_level(finding, problems);
         const bool has_frames = part.tangents && !part.tangents->identified.agreements.empty();
         if (!has_frames) {
             problems.add("mesh without tangents", "primitive", index, outcome);
@@ -45,7 +46,9 @@ void check_meshes(const CheckedModel& checked, Report& problems) {
     }
 }
 
-void check_map(const GltfView& view, TextureSlot slot, const Image& expected, Report& problems) {
+/// \return the image; absent if it is missing
+std::optional<std::size_t> check_map(const GltfView& view, TextureSlot slot, const Image& expected,
+                                     Report& problems) {
     const Texture* texture = find_texture(view.materials.front(), slot);
     const auto* bytes =
         texture == nullptr
@@ -54,12 +57,13 @@ void check_map(const GltfView& view, TextureSlot slot, const Image& expected, Re
     const auto index = static_cast<std::size_t>(slot);
     if (bytes == nullptr || bytes->empty()) {
         problems.add("missing map", "texture", index, outcome);
-        return;
+        return std::nullopt;
     }
     const Image stored = read_image(*bytes, "map", slot_info(slot).use);
     if (stored.width != expected.width || stored.height != expected.height ||
         stored.samples != expected.samples)
         problems.add("map with other texels", "texture", index, outcome);
+    return texture->image;
 }
 
 /// The factors are written as decimal numbers that are read back exactly.
@@ -76,10 +80,26 @@ void check_factors(const GltfMaterial& material, const GltfMaterial& expected, R
         }
     });
     check("opacity", material.opacity == expected.opacity);
-    check("alpha mode", material.alpha_mode == expected.alpha_mode);
     check("emission", material.emission_factor == expected.emission_factor &&
                           material.emission_strength == expected.emission_strength);
-    check("number of sides", material.double_sided == expected.double_sided);
+}
+
+void check_draw_mode(const GltfMaterial& material, const DrawMode& expected, std::size_t index,
+                     Report& problems) {
+    const bool is_masked = expected.alpha_mode == AlphaMode::mask;
+    if (material.alpha_mode != expected.alpha_mode ||
+        (is_masked && material.alpha_cutoff != expected.alpha_cutoff))
+        problems.add("another alpha mode", "material", index, outcome);
+    if (material.double_sided != expected.double_sided)
+        problems.add("another number of sides", "material", index, outcome);
+}
+
+std::size_t triangles_of(const GltfDocument& document, std::size_t materials) {
+    const std::vector<GltfPrimitiveId> ids = document.triangle_primitives();
+    std::size_t triangles = 0;
+    for (std::size_t i = 0; i < std::min(materials, ids.size()); ++i)
+        triangles += document.mesh(ids[i]).triangles.size();
+    return triangles;
 }
 
 }  // namespace
@@ -89,22 +109,31 @@ Report verify_asset(const std::filesystem::path& file, const Asset& asset) {
     const Model model = GltfDocument::read(file, reading);
     Report problems;
     problems.merge(reading);
-    check_meshes(check_model(model, reading, true), problems);
+    const std::vector<DrawMode> modes = draw_modes_of(asset);
+    check_meshes(check_model(model, reading, true), modes.size(), problems);
     const auto& document = std::get<GltfDocument>(model);
     const GltfView view = document.view();
-    if (view.materials.size() != 1) {
-        problems.add("another number of materials than 1", "material", view.materials.size(),
-                     outcome);
+    if (view.materials.size() != modes.size()) {
+        problems.add(fmt::format("another number of materials than {}", modes.size()), "material",
+                     view.materials.size(), outcome);
         return problems;
     }
-    if (document.mesh(document.triangle_primitives().front()).triangles.size() !=
-        asset.mesh.triangles.size())
+    if (triangles_of(document, modes.size()) != asset.mesh.triangles.size())
         problems.add("another number of triangles", "mesh", 0, outcome);
     for (const AssetMap& map : maps_of(asset)) {
-        for (const TextureSlot slot : map.slots)
-            check_map(view, slot, *map.image, problems);
+        for (const TextureSlot slot : map.slots) {
+            const std::optional<std::size_t> image = check_map(view, slot, *map.image, problems);
+            for (const GltfMaterial& material : view.materials) {
+                const Texture* texture = find_texture(material, slot);
+                if (image && (texture == nullptr || texture->image != *image))
+                    problems.add("missing map", "texture", static_cast<std::size_t>(slot), outcome);
+            }
+        }
     }
-    check_factors(view.materials.front(), asset.material, problems);
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+        check_factors(view.materials[i], asset.material, problems);
+        check_draw_mode(view.materials[i], modes[i], i, problems);
+    }
     return problems;
 }
 

@@ -17,34 +17,69 @@
 namespace relief::make {
 namespace {
 
+/// "rock", or "rock_mask" and "rock_blend" beside it.
+std::string material_name(const Asset& asset, const DrawMode& mode) {
+    if (asset.draw_modes.empty() || mode.alpha_mode == AlphaMode::opaque) return asset.name;
+    return fmt::format("{}_{}", asset.name, enum_name(mode.alpha_mode));
+}
+
+/// Sorts the triangles by material, so that each is one primitive.
+void sort_by_material(Mesh& mesh, std::size_t materials) {
+    std::vector<std::vector<glm::uvec3>> triangles(materials);
+    for (const MaterialRange& range : mesh.material_ranges) {
+        const auto first = mesh.triangles.begin() + range.first_triangle;
+        std::vector<glm::uvec3>& of_material = triangles.at(range.material.value_or(0));
+        of_material.insert(of_material.end(), first, first + range.triangle_count);
+    }
+    mesh.triangles.clear();
+    mesh.material_ranges.clear();
+    for (std::uint32_t i = 0; i < materials; ++i) {
+        const auto first = static_cast<std::uint32_t>(mesh.triangles.size());
+        mesh.triangles.insert(mesh.triangles.end(), triangles[i].begin(), triangles[i].end());
+        mesh.material_ranges.push_back({first, static_cast<std::uint32_t>(triangles[i].size()), i});
+    }
+}
+
 GltfDocument document_of(const Asset& asset, Report& report) {
     MeshFile contents;
     contents.mesh = asset.mesh;
     contents.mesh.name = asset.name;
     contents.origin = asset.origin;
-    MtlMaterial material;  // Its factors are set later.
-    material.name = asset.name;
-    contents.materials.push_back(material);
-    const auto count = static_cast<std::uint32_t>(asset.mesh.triangles.size());
-    contents.mesh.material_ranges = {{0, count, 0U}};
+    for (const DrawMode& mode : draw_modes_of(asset)) {
+        MtlMaterial material;  // Its factors are set later.
+        material.name = material_name(asset, mode);
+        contents.materials.push_back(material);
+    }
+    if (asset.draw_modes.empty()) {
+        const auto count = static_cast<std::uint32_t>(asset.mesh.triangles.size());
+        contents.mesh.material_ranges = {{0, count, 0U}};
+    } else {
+        sort_by_material(contents.mesh, contents.materials.size());
+    }
     return GltfDocument::from_mesh(contents, report);
 }
 
-/// Stores the factors and the maps in the material. The files of the maps, which have their names,
-/// exist only until the document has read them.
-void store_material(GltfDocument& document, const std::filesystem::path& file, const Asset& asset,
-                    Report& report) {
-    const GltfMaterial& material = asset.material;
-    document.set_factors(0, material);
-    document.set_alpha_mode(0, material.alpha_mode, material.alpha_cutoff);
+/// Stores the factors and the maps in the materials, which share the maps. The files of the maps,
+/// which have their names, exist only until the document has read them.
+void store_materials(GltfDocument& document, const std::filesystem::path& file, const Asset& asset,
+                     Report& report) {
+    const std::vector<DrawMode> modes = draw_modes_of(asset);
+    GltfMaterial factors = asset.material;
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+        factors.double_sided = modes[i].double_sided;
+        document.set_factors(i, factors);
+        document.set_alpha_mode(i, modes[i].alpha_mode, modes[i].alpha_cutoff);
+    }
     const relief::detail::FileSet temporary;  // It is never committed.
     for (const AssetMap& map : maps_of(asset)) {
         if (map.slots.empty()) continue;
         const std::filesystem::path image =
             file.parent_path() / fmt::format("{}_{}.png", file.stem().string(), map.name);
         write_image(image, *map.image, map.metadata);
-        for (const TextureSlot slot : map.slots)
-            document.set_texture(0, slot, image, GltfImageStorage::embedded, report);
+        for (std::size_t i = 0; i < modes.size(); ++i) {
+            for (const TextureSlot slot : map.slots)
+                document.set_texture(i, slot, image, GltfImageStorage::embedded, report);
+        }
     }
 }
 
@@ -121,7 +156,7 @@ std::vector<AssetLevel> add_levels(GltfDocument& document, const Asset& asset, s
 std::vector<AssetLevel> write_asset(const std::filesystem::path& file, const Asset& asset,
                                     std::size_t levels, Report& report) {
     GltfDocument document = document_of(asset, report);
-    store_material(document, file, asset, report);
+    store_materials(document, file, asset, report);
     std::vector<AssetLevel> added = add_levels(document, asset, levels, report);
     document.write(file, report);
     return added;

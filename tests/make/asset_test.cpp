@@ -112,7 +112,8 @@ TEST(MakeAsset, DecimatesManySmallPartsInOneStep) {
     options.occlusion = false;
     options.remesh = Remeshing::never;
     Mesh before;
-    options.take_mesh = [&](std::string_view stage, const Mesh& mesh) {
+    options.take_mesh = [&](std::string_view stage, const StageMesh& after) {
+        const Mesh& mesh = after.mesh;
         if (stage == "repair") before = test::mesh_from(mesh.positions, mesh.triangles);
     };
     const Asset asset = make_asset(source_of(test::mesh_from(positions, triangles)), options);

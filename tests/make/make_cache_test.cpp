@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "tools/workplace.h"
@@ -76,6 +77,23 @@ TEST(MakeCommand, ExplainsThePlanAndMakesNothing) {
     EXPECT_EQ(workplace.outputs(), "");
     for (const char* text : {"decimate", "26800 triangles to 5000", "2 levels of detail", "about"})
         EXPECT_THAT(result.out, HasSubstr(text));
+    const ProgramResult unnamed = workplace.run(
+        "relief make data/urn-high.ply --explain --loss --view 0,90 --report out/plan.json");
+    EXPECT_EQ(unnamed.exit_code, 0) << unnamed.error;
+    EXPECT_THAT(unnamed.out, HasSubstr("data/urn-high.ply -> data/urn-high.glb"));
+    EXPECT_EQ(workplace.outputs(), "plan.json");
+    const nlohmann::json plan = nlohmann::json::parse(workplace.read("out/plan.json"))["plans"][0];
+    std::string stages;
+    for (const nlohmann::json& stage : plan["stages"]) {
+        stages += stage["stage"].get<std::string>() + " ";
+        EXPECT_LE(stage["milliseconds"], stage["processor_milliseconds"]);
+    }
+    EXPECT_EQ(stages, "read repair decimate unwrap remesh frames bake write verify loss ");
+    EXPECT_EQ(plan["stages"][9]["text"], "13 views with 3 lights");
+    const ProgramResult page =
+        workplace.run("relief make data/urn-high.ply --explain --report out/plan.html");
+    EXPECT_EQ(page.exit_code, 2);
+    EXPECT_THAT(page.error, HasSubstr("--report out/plan.html: plans are no page"));
 }
 
 }  // namespace

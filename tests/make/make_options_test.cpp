@@ -32,6 +32,7 @@ const std::map<std::string, Json>& samples() {
                                                     {"up", "z"},
                                                     {"triangles", 321},
                                                     {"crease", "none"},
+                                                    {"source-crease", "none"},
                                                     {"lods", 3},
                                                     {"no-repair", true},
                                                     {"remesh", "always"},
@@ -138,7 +139,7 @@ TEST(MakeOptions, MakeTheFilesOfTheirStagesStale) {
     for (const char* name : {"01-repair", "03-decimate", "04-unwrap", "05-frames"})
         std::filesystem::copy(workplace / "data/vase.obj",
                               workplace / "s" / (std::string(name) + ".glb"));
-    write_stage_record(workplace / "s", {}, {}, {});
+    write_stage_record(workplace / "s", {}, {}, {}, {}, {});
     for (const MakeOption& option : make_options()) {
         const MakeRequest request = request_with(workplace, std::string(option.name));
         // The stage whose file is used.

@@ -64,39 +64,19 @@ TEST(MakeSource, HasTheFactorsOfMaterials) {
     EXPECT_TRUE(findings.empty());
 }
 
-TEST(MakeSource, HasOneAlphaMode) {
+TEST(MakeSource, HasTheDrawModesOfMaterials) {
     const Workplace workplace;
     json document = two_squares(workplace);
     json& materials = document["materials"];
     materials[0]["alphaMode"] = "MASK";
     materials[0]["alphaCutoff"] = 0.25;
+    materials[1]["doubleSided"] = true;
     Findings findings;
-    make::AssetSource source = read(workplace, document, findings);
-    EXPECT_EQ(source.shared.alpha_mode, AlphaMode::mask);
-    EXPECT_EQ(source.shared.alpha_cutoff, 0.25F);
-    EXPECT_FALSE(source.materials[0].alpha_cutoff);
+    const make::AssetSource source = read(workplace, document, findings);
+    EXPECT_THAT(source.draw_modes,
+                testing::ElementsAre(make::DrawMode{AlphaMode::mask, 0.25F, false},
+                                     make::DrawMode{AlphaMode::opaque, 0.5F, true}));
     EXPECT_TRUE(findings.empty());
-
-    materials[1]["alphaMode"] = "MASK";
-    source = read(workplace, document, findings);
-    EXPECT_EQ(source.shared.alpha_mode, AlphaMode::mask);
-    EXPECT_EQ(source.shared.alpha_cutoff, 0.5F);
-    EXPECT_EQ(source.materials[0].alpha_cutoff, 0.25F);
-    EXPECT_EQ(source.materials[1].alpha_cutoff, 0.5F);
-    EXPECT_EQ(count_of(findings, "masked materials with different alpha cutoffs"), 2U);
-
-    materials[1]["alphaMode"] = "BLEND";
-    source = read(workplace, document, findings);
-    EXPECT_EQ(source.shared.alpha_mode, AlphaMode::blend);
-    EXPECT_EQ(source.materials[0].alpha_cutoff, 0.25F);
-    EXPECT_FALSE(source.materials[1].alpha_cutoff);
-    EXPECT_EQ(count_of(findings, "masked material beside blended ones"), 1U);
-
-    materials[0].erase("alphaMode");
-    findings = {};
-    source = read(workplace, document, findings);
-    EXPECT_FALSE(source.materials[0].alpha_cutoff);
-    EXPECT_EQ(count_of(findings, "opaque material beside blended ones"), 1U);
 }
 
 TEST(MakeSource, KeepsFactorsOfExtensionsThatAllMaterialsShare) {
@@ -107,18 +87,15 @@ TEST(MakeSource, KeepsFactorsOfExtensionsThatAllMaterialsShare) {
         material["extensions"]["KHR_materials_ior"] = {{"ior", 1.25}};
     materials[0]["extensions"]["KHR_materials_clearcoat"] = {{"clearcoatFactor", 1.0}};
     materials[1]["extensions"]["KHR_materials_unlit"] = json::object();
-    materials[1]["doubleSided"] = true;
     document["extensionsUsed"] = {"KHR_materials_ior", "KHR_materials_clearcoat",
                                   "KHR_materials_unlit"};
     Findings findings;
     const make::AssetSource source = read(workplace, document, findings);
     EXPECT_EQ(source.shared.metallic_roughness->refractive_index, 1.25F);
     EXPECT_EQ(source.shared.metallic_roughness->clearcoat, 0.0F);
-    EXPECT_TRUE(source.shared.double_sided);
     EXPECT_EQ(count_of(findings, "clearcoat of single materials"), 1U);
     EXPECT_EQ(count_of(findings, "unlit material of the source"), 1U);
-    EXPECT_EQ(count_of(findings, "single-sided material beside double-sided ones"), 1U);
-    EXPECT_EQ(findings.all().size(), 3U);
+    EXPECT_EQ(findings.all().size(), 2U);
 }
 
 TEST(MakeSource, HasTheMaterialsOfSeveralFiles) {

@@ -225,6 +225,26 @@ TEST_F(OverlapStages, AreMatchedByTheNamesOfAnEditedFile) {
     EXPECT_EQ(leak(), 0.0);
 }
 
+// Other programs show the parts, and keep their names.
+TEST_F(OverlapStages, HaveTheNamesOfPartsInEachFile) {
+    for (const char* file : {"01-repair.glb", "03-decimate.glb", "05-frames.glb"}) {
+        const GltfView view = test::read_document(workplace / "out/s" / file).view();
+        ASSERT_EQ(view.nodes.size(), 2U) << file;
+        EXPECT_EQ(view.nodes[0].name, "body");
+        EXPECT_EQ(view.nodes[1].name, "jacket");
+    }
+    const std::string decimated = (workplace / "out/s/03-decimate.glb").string();
+    ASSERT_EQ(
+        workplace.run("relief-mesh decimate " + decimated + " " + decimated + " --triangles 150")
+            .exit_code,
+        0);
+    const ProgramResult result = run("--from unwrap");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_THAT(result.out, HasSubstr("stage file that was edited"));
+    EXPECT_EQ(report()["parts"]["matched"], true);
+    EXPECT_EQ(leak(), 0.0);
+}
+
 TEST_F(OverlapStages, SeeAllPartsIfNamesAreMissing) {
     edit("body_low", "hat_low");
     const ProgramResult result = run("--from unwrap");

@@ -33,8 +33,7 @@ Json factors_json(const GltfMaterial& material) {
             {"roughness", surface.roughness},
             {"metallic", surface.metallic},
             {"emission", color(material.emission_factor)},
-            {"emission_strength", material.emission_strength},
-            {"is_opaque", material.alpha_mode == AlphaMode::opaque}};
+            {"emission_strength", material.emission_strength}};
 }
 
 void set_factors(GltfMaterial& material, const Json& json) {
@@ -48,7 +47,55 @@ void set_factors(GltfMaterial& material, const Json& json) {
     surface.metallic = json.at("metallic").get<float>();
     material.emission_factor = color(json.at("emission"));
     material.emission_strength = json.at("emission_strength").get<float>();
-    if (json.at("is_opaque").get<bool>()) material.alpha_mode = AlphaMode::opaque;
+}
+
+std::vector<make::DrawMode> draw_modes_of_record(const Json& json) {
+    std::vector<make::DrawMode> modes;
+    for (const Json& mode : json) {
+        const auto alpha = std::ranges::find(
+            enum_names<AlphaMode>, mode.at("alpha_mode").get<std::string>(),
+            [](const EnumName<AlphaMode>& entry) { return std::string(entry.name); });
+        if (alpha == enum_names<AlphaMode>.end()) throw InvalidInput("has a damaged alpha mode");
+        modes.push_back({alpha->value, mode.at("alpha_cutoff").get<float>(),
+                         mode.at("double_sided").get<bool>()});
+    }
+    if (modes.empty()) throw InvalidInput("has no alpha mode");
+    return modes;
+}
+
+/// Gives an asset the materials that a bake decided. A mesh that was edited so that its alpha is
+/// not known gets the most transparent one.
+void set_draw_modes(make::Asset& asset, const std::vector<make::DrawMode>& modes,
+                    const std::vector<AlphaMode>& alpha_modes, Report& report) {
+    GltfMaterial& material = asset.material;
+    const auto take = [&](const make::DrawMode& mode) {
+        material.alpha_mode = mode.alpha_mode;
+        material.alpha_cutoff = mode.alpha_cutoff;
+        material.double_sided = mode.double_sided;
+    };
+    take(modes.front());
+    if (modes.size() < 2) return;
+    const auto number_of = [&](AlphaMode alpha) {
+        return static_cast<std::uint32_t>(
+            std::ranges::find(modes, alpha, &make::DrawMode::alpha_mode) - modes.begin());
+    };
+    const bool is_known =
+        !alpha_modes.empty() && std::ranges::all_of(alpha_modes, [&](AlphaMode alpha) {
+            return number_of(alpha) < modes.size();
+        });
+    if (!is_known) {
+        report.add("mesh of several materials that was edited", "asset", 0,
+                   "has one, because alpha modes of its triangles are not known");
+        take(modes.back());
+        return;
+    }
+    asset.draw_modes = modes;
+    for (std::uint32_t i = 0; i < alpha_modes.size(); ++i) {
+        const std::uint32_t number = number_of(alpha_modes[i]);
+        std::vector<MaterialRange>& ranges = asset.mesh.material_ranges;
+        if (ranges.empty() || ranges.back().material != number) ranges.push_back({i, 0, number});
+        ++ranges.back().triangle_count;
+    }
 }
 
 /// The form of a map in the asset.
@@ -204,6 +251,12 @@ Json baked_record(const std::filesystem::path& folder, const make::Asset& asset)
                                              {"ids", ids_json(layer.coding.ids)}};
                                  })},
             {"material", factors_json(asset.material)},
+            {"draw_modes", json_list(draw_modes_of(asset),
+                                     [](const make::DrawMode& mode) -> Json {
+                                         return {{"alpha_mode", enum_name(mode.alpha_mode)},
+                                                 {"alpha_cutoff", mode.alpha_cutoff},
+                                                 {"double_sided", mode.double_sided}};
+                                     })},
             {"surface_has_occlusion", asset.surface_has_occlusion},
             {"source_triangles", asset.source_triangles},
             {"parts", parts_json(asset.parts)},
@@ -226,7 +279,6 @@ make::Asset read_baked(const MakeRequest& request, const make::AssetSource& sour
     asset.mesh.name = source.name;
     asset.origin = source.origin;
     asset.material = source.shared;
-    asset.parts.of_asset = std::move(start.parts);
     try {
         const Json& bake = record.at("bake");
         MapReader maps(folder, bake.at("maps"), report);
@@ -247,6 +299,8 @@ make::Asset read_baked(const MakeRequest& request, const make::AssetSource& sour
             asset.layers.push_back({std::move(coding), std::move(*image)});
         }
         set_factors(asset.material, bake.at("material"));
+        set_draw_modes(asset, draw_modes_of_record(bake.at("draw_modes")), start.alpha_modes,
+                       report);
         asset.surface_has_occlusion = bake.at("surface_has_occlusion").get<bool>();
         asset.source_triangles = bake.at("source_triangles").get<std::size_t>();
         asset.parts.is_matched = bake.at("parts").at("matched").get<bool>();

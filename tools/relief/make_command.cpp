@@ -51,8 +51,20 @@ void check_formats(const Job& job) {
     }
 }
 
+/// "models/rock.glb" for models/rock.ply; "models/rock-asset.glb" for models/rock.glb.
+std::string output_beside(const std::filesystem::path& input) {
+    std::filesystem::path output = input;
+    output.replace_extension(extension_for(ModelFormat::glb));
+    if (output == input) output.replace_filename(input.stem().string() + "-asset.glb");
+    return output.string();
+}
+
 TaskList make_tasks_of(const MakeCommand& command) {
-    const JobList list = jobs_of(command.words, "model", [](const std::filesystem::path& input) {
+    FileWords words = command.words;
+    // A plan needs no output.
+    if (command.explain && !words.output && words.files.size() == 1)
+        words.output = output_beside(words.files.front());
+    const JobList list = jobs_of(words, "model", [](const std::filesystem::path& input) {
         readable_format(input);
         return input.filename().replace_extension(extension_for(ModelFormat::glb));
     });
@@ -114,8 +126,14 @@ std::string repeating_line(const MakeRequest& request, const Job& job) {
     return line;
 }
 
-/// Prints the plans of all jobs.
-ExitCode explain(const MakeCommand& command, const TaskList& list) {
+/// Prints the plans of all jobs, and writes them as JSON.
+ExitCode explain(const MakeCommand& command, const TaskList& list, Json head) {
+    if (has_page(command.report)) {
+        throw UsageError(
+            fmt::format("--report {}: plans are no page", command.report.file->string()),
+            "write a .json");
+    }
+    Json plans = Json::array();
     for (const MakeTask& task : list.tasks) {
         const Job& job = task.job;
         SourceFacts facts;
@@ -123,9 +141,18 @@ ExitCode explain(const MakeCommand& command, const TaskList& list) {
         Stages stages(command.general.quiet);
         const make::AssetSource source = stages.run(
             "read", [&] { return read_source(dense_model(task.request, job), facts, findings); });
+        const std::vector<PlannedStage> plan =
+            plan_of(task.request, source, stages.milliseconds("read") / 1e3);
+        const unsigned threads = threads_of(command.general.threads);
         print_entry("plan", fmt::format("{} -> {}", job.input.string(), job.output.string()));
-        print_entry("", lines_of(plan_of(task.request, source), command.general.threads));
+        print_entry("", lines_of(plan, threads));
+        plans.push_back({{"input", job.input.string()},
+                         {"output", job.output.string()},
+                         {"threads", threads},
+                         {"stages", plan_json(plan, threads)}});
     }
+    head["plans"] = std::move(plans);
+    if (command.report.file) write_json(*command.report.file, head);
     return ExitCode::done;
 }
 
@@ -272,13 +299,13 @@ ExitCode make(const CLI::App& app, const MakeCommand& command) {
     if (!command.job_file) check_asset_options(app, command.request);
     check_start(command);
     set_thread_limit(command.general.threads);
-    if (command.explain) return explain(command, list);
-    check_outputs(command, list);
+    if (!command.explain) check_outputs(command, list);
     Json head = {{"tool", "relief make"}, {"version", version()}};
     if (command.job_file)
         head["job"] = command.job_file->string();
     else
         head["options"] = options_json(command.request);
+    if (command.explain) return explain(command, list, head);
     return list.is_single ? make_one(app, command, list.tasks.front(), head)
                           : make_all(app, command, list, head);
 }
@@ -326,7 +353,8 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
                "unchanged are left as they are, by the file relief-make.json of the folder.")
         .group(output);
     add_switch(app, "--explain", command.explain,
-               "Print the stages with estimated times, and make nothing.")
+               "Print the stages with estimated times, and make nothing. The output need not be "
+               "named. --report FILE.json: also write them as JSON.")
         .group(output);
     add_report_options(app, command.report);
     add_general_options(app, command.general);

@@ -25,6 +25,9 @@ struct MakeRequest {
     make::AssetOptions asset;
     std::vector<std::filesystem::path> more_sources;  ///< Further files of the dense model.
     shade::UpAxis up = shade::UpAxis::automatic;      ///< Of the dense model.
+    /// The crease angle for a dense model without normals, in radians, or none for smooth ones.
+    /// Absent: shade::stl_crease_angle for STL files, otherwise that of the asset.
+    std::optional<std::optional<double>> source_crease;
     Engine engine = Engine::gltf;
     bool measures_loss = false;  ///< Also without limits.
     /// Directions to the camera of views that are measured besides the 12.
@@ -82,11 +85,17 @@ struct PlannedStage {
     std::string name;
     std::string text;
     double processor_seconds = 0.0;  ///< Estimated.
+    double parallel = 0.0;           ///< The part of it that all threads share.
 };
-std::vector<PlannedStage> plan_of(const MakeRequest& request, const make::AssetSource& source);
+/// \param reading  the time that reading the source took, in seconds, on one thread
+std::vector<PlannedStage> plan_of(const MakeRequest& request, const make::AssetSource& source,
+                                  double reading);
 
-/// \param threads  0: all of the machine
+/// Returns the number of threads that are used. \param requested  0: all of the machine
+unsigned threads_of(unsigned requested);
+
 std::vector<std::string> lines_of(const std::vector<PlannedStage>& plan, unsigned threads);
+Json plan_json(const std::vector<PlannedStage>& plan, unsigned threads);
 
 /// The files of a job: the asset, for some engines its maps, and the results of stages.
 std::vector<std::filesystem::path> outputs_of(const MakeRequest& request,

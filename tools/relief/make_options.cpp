@@ -48,6 +48,16 @@ double degrees_of(double radians) {
     return radians * 180.0 / std::numbers::pi;
 }
 
+/// Parses "60" or "none".
+std::optional<double> parse_crease(const std::string& subject, const std::string& text) {
+    if (text == "none") return std::nullopt;
+    return parse_number(subject, text, {0.0, 180.0, "degrees"}) * std::numbers::pi / 180;
+}
+
+std::string crease_text(const std::optional<double>& angle) {
+    return angle ? fmt::format("{:.6g}", degrees_of(*angle)) : "none";
+}
+
 std::string not_remeshed(const MakeRequest& request) {
     const bool can_remesh =
         request.asset.remesh != make::Remeshing::never && !request.asset.keep_texcoords;
@@ -103,6 +113,30 @@ std::vector<MakeOption> source_options() {
              if (request.up == shade::UpAxis::automatic) return {};
              return {enum_name(request.up)};
          }},
+        {.name = "source-crease",
+         .key = "source_crease",
+         .stage = "repair",
+         .heading = "Source",
+         .add = [](CLI::App& app, const std::string& option,
+                   MakeRequest& request) -> std::optional<AddedOption> {
+             return add_value(
+                 app, option, "DEGREES",
+                 "For a model without normals: edges with a larger angle between their triangles "
+                 "are hard. none: all are smooth. Default: 30 for STL files, as in relief-view, "
+                 "and otherwise that of --crease.",
+                 [&request](const std::string& subject, const std::string& text) {
+                     request.source_crease = parse_crease(subject, text);
+                 });
+         },
+         .value = [](const MakeRequest& request) -> Json {
+             if (!request.source_crease) return "auto";
+             if (!*request.source_crease) return nullptr;
+             return degrees_of(**request.source_crease);
+         },
+         .words = [](const MakeRequest& request) -> Words {
+             if (!request.source_crease) return {};
+             return {crease_text(*request.source_crease)};
+         }},
     };
 }
 
@@ -134,11 +168,7 @@ std::vector<MakeOption> shape_options() {
                  "Edges with a larger angle between their triangles are hard: normals differ on "
                  "both sides, and charts end there. none: all edges are smooth. Default: 60.",
                  [&request](const std::string& subject, const std::string& text) {
-                     std::optional<double>& angle = request.asset.crease_angle;
-                     angle.reset();
-                     if (text == "none") return;
-                     angle = parse_number(subject, text, {0.0, 180.0, "degrees"}) *
-                             std::numbers::pi / 180;
+                     request.asset.crease_angle = parse_crease(subject, text);
                  });
          },
          .value = [](const MakeRequest& request) -> Json {
@@ -146,8 +176,7 @@ std::vector<MakeOption> shape_options() {
              return degrees_of(*request.asset.crease_angle);
          },
          .words = [](const MakeRequest& request) -> Words {
-             const std::optional<double>& angle = request.asset.crease_angle;
-             return {angle ? fmt::format("{:.6g}", degrees_of(*angle)) : "none"};
+             return {crease_text(request.asset.crease_angle)};
          }},
         {.name = "lods",
          .key = "lods",

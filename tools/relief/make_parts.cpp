@@ -8,7 +8,6 @@
 #include <cstdint>
 
 #include "common/summary.h"
-#include "relief/mesh/report.h"
 
 namespace relief::tools {
 
@@ -46,30 +45,6 @@ Json parts_json(const make::PartDecision& decision) {
                          {"source_triangles", part.source_triangles},
                          {"triangles", part.triangles}};
              })}};
-}
-
-Json parts_record(const make::NamedParts& parts) {
-    Json runs = Json::array();
-    for (const std::uint32_t part : parts.part_of) {
-        if (runs.empty() || runs.back()[0] != part) runs.push_back({part, 0U});
-        runs.back()[1] = runs.back()[1].get<std::uint32_t>() + 1;
-    }
-    return {{"names", parts.names}, {"runs", std::move(runs)}};
-}
-
-make::NamedParts parts_of_record(const Json& record) {
-    make::NamedParts parts;
-    try {
-        parts.names = record.at("names").get<std::vector<std::string>>();
-        for (const Json& run : record.at("runs")) {
-            const auto part = run.at(0).get<std::uint32_t>();
-            if (part >= parts.names.size()) throw InvalidInput("has a part without a name");
-            parts.part_of.insert(parts.part_of.end(), run.at(1).get<std::uint32_t>(), part);
-        }
-    } catch (const Json::exception&) {
-        throw InvalidInput("has damaged parts");
-    }
-    return parts;
 }
 
 }  // namespace relief::tools

@@ -25,8 +25,4 @@ void add_named_parts(const MapModelPart& part, const std::string& file, BakeSide
 std::vector<std::string> part_lines(const make::PartDecision& decision);
 Json parts_json(const make::PartDecision& decision);
 
-/// Stores parts in a record of stages, and reads them. \throws InvalidInput if it is damaged
-Json parts_record(const make::NamedParts& parts);
-make::NamedParts parts_of_record(const Json& record);
-
 }  // namespace relief::tools

@@ -99,37 +99,6 @@ void report_others(std::span<const UsedMaterial> used, Report& report) {
     }
 }
 
-/// Returns the mode of alpha that all materials can have. Alpha that is cut where other materials
-/// blend, or have another limit, becomes 0 or 1 before it is baked.
-void set_alpha(std::span<const UsedMaterial> used, GltfMaterial& shared, Report& report) {
-    std::vector<float> cutoffs;
-    bool blends = false;
-    for (const UsedMaterial& material : used) {
-        blends = blends || material.source->alpha_mode == AlphaMode::blend;
-        if (material.source->alpha_mode == AlphaMode::mask)
-            cutoffs.push_back(material.source->alpha_cutoff);
-    }
-    if (cutoffs.empty() && !blends) return;
-    shared.alpha_mode = blends ? AlphaMode::blend : AlphaMode::mask;
-    const bool has_one_cutoff = !blends && std::ranges::count(cutoffs, cutoffs.front()) ==
-                                               static_cast<std::ptrdiff_t>(cutoffs.size());
-    if (has_one_cutoff) {
-        shared.alpha_cutoff = cutoffs.front();
-        return;
-    }
-    for (const auto& [number, material, high] : used) {
-        if (material->alpha_mode == AlphaMode::mask) {
-            high->alpha_cutoff = material->alpha_cutoff;
-            report.add(blends ? "masked material beside blended ones"
-                              : "masked materials with different alpha cutoffs",
-                       "material", number, "is cut to opacity 0 or 1");
-        } else if (blends && material->alpha_mode == AlphaMode::opaque) {
-            report.add("opaque material beside blended ones", "material", number,
-                       "is blended with opacity 1");
-        }
-    }
-}
-
 /// Returns the beginning of a path in glTF: "extensions/KHR_materials_clearcoat/".
 std::string_view extension_path(std::string_view path) {
     const std::string_view start = "extensions/";
@@ -175,18 +144,6 @@ void set_shared_factors(std::span<const UsedMaterial> used, GltfMaterial& shared
             }
         }
     });
-}
-
-void set_sides(std::span<const UsedMaterial> used, GltfMaterial& shared, Report& report) {
-    shared.double_sided = std::ranges::any_of(
-        used, [](const UsedMaterial& material) { return material.source->double_sided; });
-    if (!shared.double_sided) return;
-    for (const UsedMaterial& material : used) {
-        if (!material.source->double_sided) {
-            report.add("single-sided material beside double-sided ones", "material",
-                       material.number, "is double-sided");
-        }
-    }
 }
 
 /// If only some parts have texture coordinates, the others get (0, 0): their materials have no
@@ -294,6 +251,7 @@ make::AssetSource read_source(const DenseModel& model, SourceFacts& facts, Findi
     const std::filesystem::path& file = model.files.front();
     make::AssetSource source;
     source.origin = models.origin;
+    source.crease_angle = model.crease_angle;
     source.parts = std::move(models.names);
     add_missing_texcoords(models.parts);
     report_lost_normals(models.parts, report);
@@ -307,15 +265,16 @@ make::AssetSource read_source(const DenseModel& model, SourceFacts& facts, Findi
         textures.add(models.files[i], source.mesh, models.appearances[i], {}, all, report);
         const std::vector<HighMaterial>& added = textures.materials().back().materials;
         source.materials.insert(source.materials.end(), added.begin(), added.end());
-        for (const GltfMaterial& material : models.appearances[i].materials)
+        for (const GltfMaterial& material : models.appearances[i].materials) {
             source.material_names.push_back(material.name);
+            source.draw_modes.push_back(
+                {material.alpha_mode, material.alpha_cutoff, material.double_sided});
+        }
     }
     facts.textures = textures.description();
     const std::vector<UsedMaterial> used = used_materials(models, source);
     report_others(used, report);
-    set_alpha(used, source.shared, report);
     set_shared_factors(used, source.shared, report);
-    set_sides(used, source.shared, report);
     findings.add("read", report);
     return source;
 }

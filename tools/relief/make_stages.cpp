@@ -8,7 +8,6 @@
 #include <array>
 #include <string>
 
-#include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image_file.h"
 
 namespace relief::tools {
@@ -48,18 +47,6 @@ std::vector<std::filesystem::path> StageFiles::all() const {
     for (const std::string& map : maps_)
         files.push_back(folder_ / map_file_name(map));
     return files;
-}
-
-std::filesystem::path StageFiles::write_mesh(std::string_view stage, const Mesh& mesh,
-                                             const glm::dvec3& origin, Report& report) const {
-    MeshFile contents;
-    contents.mesh = mesh;
-    contents.mesh.name = stage;
-    contents.mesh.material_ranges.clear();  // The materials are those of the source.
-    contents.origin = origin;
-    const std::filesystem::path file = file_of(stage, ".glb");
-    GltfDocument::from_mesh(contents, report).write(file, report);
-    return file;
 }
 
 std::vector<std::filesystem::path> StageFiles::write_maps(const make::Asset& asset) const {

@@ -5,13 +5,11 @@
 #pragma once
 
 #include <filesystem>
-#include <glm/glm.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "relief/make/asset.h"
-#include "relief/mesh/report.h"
 
 namespace relief::tools {
 
@@ -34,11 +32,6 @@ class StageFiles {
     [[nodiscard]] std::filesystem::path mesh_file(std::string_view stage) const {
         return file_of(stage, ".glb");
     }
-
-    /// Writes the mesh after a stage. \param report  counts values that glTF forbids
-    /// \throws FileError \return the file
-    std::filesystem::path write_mesh(std::string_view stage, const Mesh& mesh,
-                                     const glm::dvec3& origin, Report& report) const;
 
     /// Writes the maps of an asset. \throws FileError \return the files
     std::vector<std::filesystem::path> write_maps(const make::Asset& asset) const;

@@ -100,43 +100,69 @@ void check_earlier_files(const StageFiles& files, const Json& record, std::strin
     }
 }
 
-/// Reads a mesh in the space of an origin.
-/// \param names  gets the names of its objects, if it has several
-Mesh read_stage_mesh(const std::filesystem::path& file, const glm::dvec3& origin,
-                     make::NamedParts& names, Report& report) {
-    Model model = read_model(file, report);
-    glm::dvec3 shift(0.0);
-    Mesh mesh;
-    auto* document = std::get_if<GltfDocument>(&model);
-    const GltfView view = document != nullptr ? document->view() : GltfView();
-    const bool is_only = view.primitives.size() == 1 &&
-                         glm::mat3(view.primitives.front().world_from_object) == glm::mat3(1.0F);
-    if (is_only) {
-        // Without a change of any value.
-        const glm::vec3 place(view.primitives.front().world_from_object[3]);
-        if (place != glm::vec3(origin)) shift = glm::dvec3(place) - origin;
-        mesh = document->mesh(view.primitives.front().what);
-    } else {
-        MapModel parts = map_model(std::move(model), ModelSpace::world, report);
-        shift = parts.origin - origin;
-        for (const MapModelPart& part : parts.parts)
-            add_named_parts(part, "", BakeSide::low, names);
-        if (names.names.size() < 2) names = {};
-        mesh = joined(std::move(parts.parts));
+Json runs_json(const std::vector<make::StageRun>& runs) {
+    return json_list(runs, [](const make::StageRun& run) -> Json {
+        return {run.count, run.primitives};
+    });
+}
+
+std::vector<make::StageRun> runs_of(const Json& json) {
+    std::vector<make::StageRun> runs;
+    for (const Json& run : json)
+        runs.push_back(
+            {run.at(0).get<std::uint32_t>(), run.at(1).get<std::vector<std::uint32_t>>()});
+    return runs;
+}
+
+Json layout_json(const make::StageLayout& layout) {
+    return {{"has_parts", layout.has_parts},
+            {"triangles", runs_json(layout.triangles)},
+            {"vertices", runs_json(layout.vertices)}};
+}
+
+/// \throws FileError if the record is damaged
+make::StageLayout layout_of(const std::filesystem::path& folder, const Json& record,
+                            const std::string& file) {
+    try {
+        const Json& layout = record.at("layouts").at(file);
+        return {layout.at("has_parts").get<bool>(), runs_of(layout.at("triangles")),
+                runs_of(layout.at("vertices"))};
+    } catch (const Json::exception&) {
+        throw failure(folder / record_name, "has damaged layouts", fresh);
     }
+}
+
+/// Reads a file that was edited, in the space of an origin. The names of its objects are parts, and
+/// their materials have its alpha modes, if there are several.
+void read_edited(const std::filesystem::path& file, const glm::dvec3& origin,
+                 make::AssetStart& start, Report& report) {
+    MapModel model = map_model(read_model(file, report), ModelSpace::world, report);
+    const glm::dvec3 shift = model.origin - origin;
+    for (const MapModelPart& part : model.parts) {
+        add_named_parts(part, "", BakeSide::low, start.parts);
+        std::vector<AlphaMode> modes(part.mesh.triangles.size(), AlphaMode::opaque);
+        for (const MaterialRange& range : part.mesh.material_ranges) {
+            if (!range.material || *range.material >= model.appearance.materials.size()) continue;
+            std::fill_n(modes.begin() + range.first_triangle, range.triangle_count,
+                        model.appearance.materials[*range.material].alpha_mode);
+        }
+        start.alpha_modes.insert(start.alpha_modes.end(), modes.begin(), modes.end());
+    }
+    if (start.parts.names.size() < 2) start.parts = {};
+    start.mesh = joined(std::move(model.parts));
     if (shift != glm::dvec3(0.0)) {
-        for (glm::vec3& position : mesh.positions)
+        for (glm::vec3& position : start.mesh.positions)
             position = glm::vec3(glm::dvec3(position) + shift);
     }
-    mesh.material_ranges.clear();
-    return mesh;
+    start.mesh.material_ranges.clear();
 }
 
 }  // namespace
 
 std::filesystem::path write_stage_record(const std::filesystem::path& folder,
                                          const make::Asset& asset, const MakeRequest& request,
-                                         const std::vector<std::filesystem::path>& inputs) {
+                                         const std::vector<std::filesystem::path>& inputs,
+                                         const StageLayouts& layouts, const Json& before) {
     const make::AssetOptions& options = request.asset;
     Json record = {{"tool", "relief make"}, {"version", version()}};
     record["inputs"] = Json::object();
@@ -166,7 +192,16 @@ std::filesystem::path write_stage_record(const std::filesystem::path& folder,
                 record["files"][file.filename().string()] = file_hash(file);
         }
     }
-    record["parts"] = parts_record(asset.parts.of_asset);
+    record["layouts"] = Json::object();
+    for (const auto& [file, hash] : record["files"].items()) {
+        const auto layout = layouts.find(file);
+        if (layout != layouts.end()) {
+            record["layouts"][file] = layout_json(layout->second);
+        } else if (before.contains("layouts") && before["layouts"].contains(file) &&
+                   before["files"].value(file, "") == hash) {
+            record["layouts"][file] = before["layouts"][file];
+        }
+    }
     record["bake"] = baked_record(folder, asset);
     write_json(folder / record_name, record);
     return folder / record_name;
@@ -194,12 +229,16 @@ make::AssetStart read_start(const Json& record, const std::filesystem::path& fol
         report.add("stage file that was edited", "file", 0,
                    fmt::format("{} replaces the result of its stage", file.string()));
     if (stage == "remesh" && !is_edited) return start;
-    start.mesh = about(file, [&] { return read_stage_mesh(file, origin, start.parts, report); });
-    if (is_edited) return start;
+    if (is_edited) {
+        about(file, [&] { read_edited(file, origin, start, report); });
+        return start;
+    }
+    make::StageContents contents =
+        make::read_stage_file(file, layout_of(folder, record, file.filename().string()));
+    start.mesh = std::move(contents.mesh);
+    start.parts = std::move(contents.parts);
+    start.alpha_modes = std::move(contents.alpha_modes);
     start.is_repaired_source = stage == "decimate" && before == "repair";
-    start.parts = about(folder / record_name,
-                        [&] { return parts_of_record(record.value("parts", Json::object())); });
-    if (start.parts.part_of.size() != start.mesh.triangles.size()) start.parts = {};
     return start;
 }
 

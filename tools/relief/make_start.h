@@ -6,22 +6,30 @@
 
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "common/text.h"
 #include "make_job.h"
 #include "relief/make/asset.h"
+#include "relief/make/stage_file.h"
 #include "relief/mesh/report.h"
 
 namespace relief::tools {
 
+/// The layouts of files, by their names.
+using StageLayouts = std::map<std::string, make::StageLayout>;
+
 /// Writes stages.json. \throws FileError
 /// \param inputs  every file that was read
+/// \param layouts  of the files that were written
+/// \param before  the record of the files of earlier stages; null if all stages ran
 /// \return the file
 std::filesystem::path write_stage_record(const std::filesystem::path& folder,
                                          const make::Asset& asset, const MakeRequest& request,
-                                         const std::vector<std::filesystem::path>& inputs);
+                                         const std::vector<std::filesystem::path>& inputs,
+                                         const StageLayouts& layouts, const Json& before);
 
 /// Returns stages.json. \throws FileError if it is missing or damaged
 Json read_stage_record(const std::filesystem::path& folder);

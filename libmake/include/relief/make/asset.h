@@ -40,10 +40,22 @@ struct NamedParts {
     std::vector<std::uint32_t> part_of;  ///< For each triangle of the mesh, an index of `names`.
 };
 
+/// The properties of a material that no map can hold.
+struct DrawMode {
+    AlphaMode alpha_mode = AlphaMode::opaque;
+    float alpha_cutoff = 0.5F;  ///< For AlphaMode::mask.
+    bool double_sided = false;
+
+    friend bool operator==(const DrawMode&, const DrawMode&) = default;
+};
+
 /// A dense mesh with its materials.
 struct AssetSource {
-    std::string name;        ///< Of the asset's mesh and material.
-    Mesh mesh;               ///< Valid (mesh.h). Without normals, they are computed.
+    std::string name;  ///< Of the asset's mesh and material.
+    Mesh mesh;         ///< Valid (mesh.h). Without normals, they are computed.
+    /// Then edges with a larger angle between their triangles are hard; radians, 0 to pi. Absent:
+    /// AssetOptions::crease_angle.
+    std::optional<double> crease_angle{};
     glm::dvec3 origin{0.0};  ///< Of the positions (mesh_file.h).
     NamedParts parts{};      ///< Without names, the mesh is one part.
     /// Indexed by the material ranges of the mesh.
@@ -52,8 +64,12 @@ struct AssetSource {
     std::optional<HighMaterial> otherwise;
     /// The names of `materials` for LayerKind::id (names_by_material()); may be shorter.
     std::vector<std::string> material_names;
-    /// The properties that all materials share, and that the asset gets: the alpha mode, the sides,
-    /// and the factors that HighMaterial does not have (clearcoat, index of refraction, ...).
+    /// How `materials` are drawn, one for each; triangles without a material have the default
+    /// values. Empty: all are drawn as `shared` says.
+    std::vector<DrawMode> draw_modes;
+    /// The properties that all materials share, and that the asset gets: the factors that
+    /// HighMaterial does not have (clearcoat, index of refraction, ...), and, without `draw_modes`,
+    /// the alpha mode and the sides.
     GltfMaterial shared;
 };
 
@@ -65,11 +81,22 @@ struct AssetStart {
     /// compute.
     Mesh mesh;
     bool is_remeshed = false;  ///< It comes from a closed surface around the source.
-    /// For "decimate": the mesh is what "repair" gave, so that its parts are those of the source.
+    /// For "decimate": the mesh is what "repair" gave, so that its parts and alpha modes are those
+    /// of the source.
     bool is_repaired_source = false;
     /// The parts of the mesh, whose names are those of the source. Without names they are not
     /// known.
     NamedParts parts{};
+    /// The alpha of each triangle of the mesh; without different ones they are not known.
+    std::vector<AlphaMode> alpha_modes{};
+};
+
+/// The mesh after a stage.
+struct StageMesh {
+    const Mesh& mesh;
+    NamedParts parts;  ///< Of its triangles; without names they are not known, or all the same.
+    /// The alpha of its triangles; empty: they are not known, or all the same.
+    std::vector<AlphaMode> alpha_modes;
 };
 
 struct AssetOptions {
@@ -91,7 +118,7 @@ struct AssetOptions {
     int padding = 8;
     /// Edges with a larger angle between their triangles are hard, and borders of charts where that
     /// is possible; radians, 0 to pi. Absent: all edges are smooth. It also applies to a source
-    /// without normals.
+    /// without normals and without AssetSource::crease_angle.
     std::optional<double> crease_angle = 1.0471975511965976;  // 60 degrees
     /// Keeps the texture coordinates of the source instead of computing new ones.
     bool keep_texcoords = false;
@@ -115,7 +142,7 @@ struct AssetOptions {
     std::function<void(std::string_view stage, const std::function<void()>& work)> run_stage;
     /// Receives the mesh after each stage but "bake": after "repair" the dense one, in the space of
     /// AssetSource::origin. Exceptions pass.
-    std::function<void(std::string_view stage, const Mesh& mesh)> take_mesh;
+    std::function<void(std::string_view stage, const StageMesh& mesh)> take_mesh;
 };
 
 /// The names of the stages in their order: "repair", "remesh", "decimate", "unwrap", "frames",
@@ -161,13 +188,14 @@ struct PartDecision {
     /// Why parts are not matched; empty if they are, or if the source has one part.
     std::string reason;
     std::vector<AssetPart> parts;  ///< If they are matched.
-    NamedParts of_asset;           ///< The parts of Asset::mesh; without names they are not known.
 };
 
 /// An asset in memory.
 struct Asset {
     std::string name;
-    Mesh mesh;  ///< With normals, texture coordinates and tangents (MikkTSpace); one material.
+    /// With normals, texture coordinates and tangents (MikkTSpace). Its material ranges are indices
+    /// of `draw_modes`; there are none if that is empty.
+    Mesh mesh;
     glm::dvec3 origin{0.0};
     std::size_t source_triangles = 0;      ///< After repair.
     std::optional<RemeshDecision> remesh;  ///< If there is a stage "remesh".
@@ -187,11 +215,19 @@ struct Asset {
     std::optional<Image> surface_map;
     bool surface_has_occlusion = false;  ///< Otherwise the red of `surface_map` has no meaning.
     std::optional<Image> emission_map;   ///< sRGB; the strength of the material is its unit.
-    /// The factors, which maps multiply. Its textures and `emission` are not used.
+    /// The factors, which maps multiply, the alpha mode and the sides. Its textures and `emission`
+    /// are not used.
     GltfMaterial material;
+    /// If the asset has several materials: each has the factors and the maps of `material`, but its
+    /// own alpha mode and sides. At most one for each alpha mode, in their order.
+    std::vector<DrawMode> draw_modes;
     std::vector<AssetLayer> layers;  ///< In the order of AssetOptions::layers.
     std::vector<StageReport> reports;
 };
+
+/// Returns how the materials of an asset's file are drawn: Asset::draw_modes, or that of its only
+/// material.
+std::vector<DrawMode> draw_modes_of(const Asset& asset);
 
 /// A map of an asset, as it is stored.
 struct AssetMap {
@@ -229,13 +265,15 @@ VaryingProperties varying_properties(const Mesh& mesh, const AssetSource& source
 /// - *remesh* replaces the triangles by a closed surface (remeshing.h), which is decimated; maps
 ///   still show the source.
 /// - *decimate* reduces the surface to the target number of triangles (topology.h). A source that
-///   has no more keeps them, which is reported.
+///   has no more keeps them, which is reported. Borders between opaque, masked and blended
+///   materials stay, and the asset has a material for each (Asset::draw_modes).
 /// - *unwrap* divides at hard edges and packs the charts into the map (unwrap.h).
 /// - *frames* computes normals, hard at the crease angle, and MikkTSpace tangents (frames.h).
 /// - *bake* casts rays onto the source (bake.h). One pass gives normals, colors with opacity,
 ///   roughness, metalness, emission and further layers; occlusion, bent normals and thickness have
 ///   a quarter of their size. Bent normals have the rays of occlusion. The rays of a named part hit
-///   only this part of the source (PartDecision).
+///   only this part of the source (PartDecision), and those of opaque, masked and blended triangles
+///   only triangles of their kind, unless PartMatching::all is requested.
 ///   Occlusion textures of the source are combined with it: the darker one counts.
 ///
 /// \return the same bytes for any number of threads

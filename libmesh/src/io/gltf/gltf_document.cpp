@@ -444,7 +444,10 @@ std::vector<std::string> GltfDocument::unsupported_contents() const {
         add_count(lines, array_in(*lights, "lights").size(), "light");
     }
     add_count(lines, counts.more_attributes, "further vertex attribute");
-    add_count(lines, counts.points_and_lines, "primitive of points or lines");
+    if (counts.points_and_lines > 0) {
+        lines.push_back(fmt::format("{} primitive{} of points or lines", counts.points_and_lines,
+                                    counts.points_and_lines == 1 ? "" : "s"));
+    }
     return lines;
 }
 

@@ -29,6 +29,7 @@
 #include "files.h"
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_contents.h"
+#include "io/gltf/gltf_writer.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/report.h"
 
@@ -657,16 +658,9 @@ void add_required_tangents(GltfDocument& document, const GltfContents& contents,
 
 }  // namespace
 
-void GltfDocument::write(const std::filesystem::path& file, Report& report) const {
-    GltfDocument copy(std::make_unique<Contents>(Contents{borrowing_copy(contents_->data)}));
-    GltfContents& contents = copy.contents_->data;
-    try {
-        repair_document(contents, report);
-        add_required_tangents(copy, contents, report);
-        require_valid(contents);
-    } catch (const InvalidInput& error) {
-        throw FileError(file, fmt::format("cannot be written: {}", error.what()));
-    }
+namespace detail {
+
+void write_gltf(const std::filesystem::path& file, const GltfContents& contents) {
     const std::string extension = lower_extension(file);
     if (extension == ".glb") {
         write_glb(file, contents);
@@ -677,6 +671,21 @@ void GltfDocument::write(const std::filesystem::path& file, Report& report) cons
             file, fmt::format("'{}' is not an extension of glTF files, which are .gltf and .glb",
                               extension));
     }
+}
+
+}  // namespace detail
+
+void GltfDocument::write(const std::filesystem::path& file, Report& report) const {
+    GltfDocument copy(std::make_unique<Contents>(Contents{borrowing_copy(contents_->data)}));
+    GltfContents& contents = copy.contents_->data;
+    try {
+        repair_document(contents, report);
+        add_required_tangents(copy, contents, report);
+        require_valid(contents);
+    } catch (const InvalidInput& error) {
+        throw FileError(file, fmt::format("cannot be written: {}", error.what()));
+    }
+    write_gltf(file, contents);
 }
 
 }  // namespace relief
