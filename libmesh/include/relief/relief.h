@@ -432,16 +432,23 @@ typedef struct relief_bake_options {
     double sample_angle;        ///< Adaptive sampling: more samples where normals differ by more.
                                 ///< Default: RELIEF_ABSENT, all samples.
     double occlusion_distance;  ///< Default: RELIEF_ABSENT, half of the longest side.
-    int32_t occlusion_rays;     ///< For each texel, 1 to 65536. Default: 64.
+    int32_t occlusion_rays;     ///< For each texel, 1 to 65536; also of bent normals. Default: 64.
     int32_t samples;            ///< For each texel: 1, 4, 16, 64 or 256. Default: 1.
     int32_t padding;            ///< Around charts, 0 to 1024 texels. Default: 0.
     int32_t space;              ///< relief_vector_space. Default: RELIEF_SPACE_TANGENT.
     int32_t directions;         ///< relief_ray_directions. Default: RELIEF_RAYS_AVERAGED.
     int32_t take_back_faces;    ///< Not 0: rays hit both sides of the high mesh. Default: 0.
     int32_t allow_size_mismatch;  ///< Not 0: sizes may differ by more than 10 times. Default: 0.
-    int32_t green;                ///< relief_green, of `normals`. Default: RELIEF_GREEN_UP.
+    int32_t green;                ///< relief_green, of both normals. Default: RELIEF_GREEN_UP.
     int32_t flat;                 ///< relief_flat_code. Default: RELIEF_FLAT_HALF.
     int32_t dither;               ///< relief_dither. Default: RELIEF_DITHER_NONE.
+    double thickness_distance;    ///< Default: RELIEF_ABSENT, the longest side.
+    int32_t thickness_rays;       ///< For each texel, 1 to 65536. Default: 64.
+    int32_t reserved;             ///< 0
+    /// For each high mesh, a number for each of its triangles, such as that of its material, for
+    /// `ids` of relief_bake_maps; NULL: the number of the mesh. A number is below 2^24, and at most
+    /// 65536 are different. Default: NULL, the numbers of the meshes.
+    const uint32_t* const* high_ids;
 } relief_bake_options;
 RELIEF_C_API relief_status relief_bake_options_init(relief_bake_options* options, size_t size);
 
@@ -460,6 +467,13 @@ typedef struct relief_bake_maps {
     relief_output_image heights;    ///< One float: above the low mesh, in units of the meshes.
     relief_output_image occlusion;  ///< One float from 0 (hidden) to 1 (open).
     uint8_t* states;                ///< relief_texel_state of each texel, contiguous; or NULL.
+    /// The mean directions of occlusion rays that hit nothing, coded as `normals`.
+    relief_output_image bent_normals;
+    relief_output_image thickness;  ///< One float: the distance to the surface behind.
+    relief_output_image curvature;  ///< One float: the mean curvature; convex is positive.
+    relief_output_image positions;  ///< Three floats: of the high surface.
+    /// One float: the number of the triangle (relief_bake_options::high_ids) that most samples hit.
+    relief_output_image ids;
 } relief_bake_maps;
 RELIEF_C_API relief_status relief_bake_maps_init(relief_bake_maps* maps, size_t size);
 
@@ -472,6 +486,9 @@ typedef struct relief_bake_result {
     double max_distance;  ///< And inside.
     double min_height;    ///< Of the high surface above the low mesh, over all hits; 0 without any.
     double max_height;
+    size_t occlusion_rays;       ///< Also those of bent normals.
+    size_t thickness_rays;       ///< All of them.
+    size_t open_thickness_rays;  ///< Those that hit nothing.
 } relief_bake_result;
 RELIEF_C_API relief_status relief_bake_result_init(relief_bake_result* result, size_t size);
 
@@ -482,7 +499,9 @@ RELIEF_C_API relief_status relief_bake_result_init(relief_bake_result* result, s
 ///         Missing normals are averaged
 /// \param low  with positions, texture coordinates and triangles. Missing normals are averaged, and
 ///         missing tangents are MikkTSpace's
-/// \param maps  texels that are neither baked nor padded are flat, 0 high and open
+/// \param maps  texels that are neither baked nor padded are flat, 0 high, open, of the id -1, and
+/// 0
+///         in all other maps
 /// \param result  initialized; may be NULL
 /// \param report  counts problems of the meshes and missed texels
 /// \return RELIEF_INVALID_INPUT also if the bounding boxes of high and low meshes do not match;

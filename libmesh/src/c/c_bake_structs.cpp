@@ -25,6 +25,9 @@ relief_bake_options relief::detail::default_bake_options() {
     options.green = format.green;
     options.flat = format.flat;
     options.dither = format.dither;
+    const ThicknessOptions thickness;
+    options.thickness_distance = thickness.distance.value_or(RELIEF_ABSENT);
+    options.thickness_rays = thickness.rays;
     return options;
 }
 

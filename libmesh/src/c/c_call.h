@@ -64,6 +64,15 @@ relief_status guarded(const Function& function) noexcept {
 /// specialization with its former size.
 template <typename Struct>
 inline constexpr std::size_t first_size = sizeof(Struct);
+template <>
+inline constexpr std::size_t first_size<relief_bake_options> = offsetof(relief_bake_options,
+                                                                        thickness_distance);
+template <>
+inline constexpr std::size_t first_size<relief_bake_maps> = offsetof(relief_bake_maps,
+                                                                     bent_normals);
+template <>
+inline constexpr std::size_t first_size<relief_bake_result> = offsetof(relief_bake_result,
+                                                                       occlusion_rays);
 
 /// A larger size is taken for that of a struct that was not initialized.
 inline constexpr std::size_t max_struct_size = 4096;

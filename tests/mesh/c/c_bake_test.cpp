@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <vector>
 
@@ -100,6 +102,95 @@ TEST(CBake, BakesAsCpp) {
     EXPECT_EQ(result.rays, cpp.rays);
     EXPECT_EQ(result.offset, cpp.distances.offset);
     EXPECT_EQ(result.max_height, cpp.max_height);
+}
+
+TEST(CBake, HasFurtherLayersAsCpp) {
+    const BakePair pair;
+    BakeOptions same;
+    same.map.width = same.map.height = baked_size;
+    same.map.layers.normals = false;
+    same.map.layers.bent_normals = OcclusionOptions{.rays = 16};
+    same.map.layers.thickness = ThicknessOptions{.rays = 8, .distance = 0.5};
+    same.map.layers.curvature = same.map.layers.positions = true;
+    Image bent = make_image(baked_size, baked_size, 3, 32, ColorSpace::data);
+    std::vector<float> expected_thickness, expected_curvature, expected_positions;
+    const auto append = [](std::vector<float>& values, std::span<const float> more) {
+        values.insert(values.end(), more.begin(), more.end());
+    };
+    const BakeResult cpp =
+        bake_normals(std::span(&pair.high, 1), pair.low, same, [&](const BakedRows& rows) {
+            std::copy(rows.bent_normals.begin(), rows.bent_normals.end(),
+                      MutableImageView(bent).row<float>(rows.first_row));
+            append(expected_thickness, rows.thickness);
+            append(expected_curvature, rows.curvature);
+            append(expected_positions, rows.positions);
+        });
+    Image expected_bent = make_image(baked_size, baked_size, 3, 8, ColorSpace::data);
+    encode_normal_map(bent, {.bits = 8, .green = Green::down}, MutableImageView(expected_bent));
+
+    relief_bake_options options{};
+    relief_bake_maps maps{};
+    relief_bake_result result{};
+    ASSERT_EQ(relief_bake_options_init(&options, sizeof(options)), RELIEF_OK);
+    ASSERT_EQ(relief_bake_maps_init(&maps, sizeof(maps)), RELIEF_OK);
+    ASSERT_EQ(relief_bake_result_init(&result, sizeof(result)), RELIEF_OK);
+    EXPECT_EQ(options.thickness_rays, 64);
+    EXPECT_EQ(options.thickness_distance, RELIEF_ABSENT);
+    options.occlusion_rays = 16;
+    options.thickness_rays = 8;
+    options.thickness_distance = 0.5;
+    options.green = RELIEF_GREEN_DOWN;
+    constexpr std::size_t texels = std::size_t{baked_size} * baked_size;
+    std::vector<std::uint8_t> bent_texels(3 * texels);
+    std::vector<float> thickness(texels), curvature(texels), positions(3 * texels), ids(texels);
+    const auto image = [](auto& values, int channels, int type) {
+        return relief_output_image{values.data(), 0, baked_size, baked_size, channels, type};
+    };
+    maps.bent_normals = image(bent_texels, 3, RELIEF_SAMPLE_UINT8);
+    maps.thickness = image(thickness, 1, RELIEF_SAMPLE_FLOAT);
+    maps.curvature = image(curvature, 1, RELIEF_SAMPLE_FLOAT);
+    maps.positions = image(positions, 3, RELIEF_SAMPLE_FLOAT);
+    maps.ids = image(ids, 1, RELIEF_SAMPLE_FLOAT);
+    // The first half of the triangles is 7, the others are 16000000.
+    std::vector<std::uint32_t> numbers(pair.high.triangles.size(), 7);
+    std::fill(numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2), numbers.end(),
+              16'000'000);
+    const std::uint32_t* const high_ids[] = {numbers.data()};
+    options.high_ids = high_ids;
+    const relief_mesh* const high[] = {&pair.high_view};
+    const auto bake = [&] {
+        return relief_bake(high, 1, &pair.low_view, &options, nullptr, &maps, &result, nullptr);
+    };
+    ASSERT_EQ(bake(), RELIEF_OK) << relief_last_error();
+    EXPECT_EQ(bent_texels, std::get<std::vector<std::uint8_t>>(expected_bent.samples));
+    EXPECT_EQ(thickness, expected_thickness);
+    EXPECT_EQ(curvature, expected_curvature);
+    EXPECT_EQ(positions, expected_positions);
+    EXPECT_EQ(result.occlusion_rays, cpp.occlusion_rays);
+    EXPECT_GT(result.thickness_rays, 0U);
+    EXPECT_EQ(result.open_thickness_rays, cpp.open_thickness_rays);
+    const auto count = [&](float id) { return std::count(ids.begin(), ids.end(), id); };
+    EXPECT_NEAR(static_cast<double>(count(7.0F)) / texels, 0.5, 0.02);
+    EXPECT_EQ(count(7.0F) + count(16'000'000.0F), static_cast<std::ptrdiff_t>(texels));
+    options.high_ids = nullptr;
+    ASSERT_EQ(bake(), RELIEF_OK) << relief_last_error();
+    EXPECT_EQ(count(0.0F), static_cast<std::ptrdiff_t>(texels));
+    numbers[3] = 1U << 24U;
+    options.high_ids = high_ids;
+    EXPECT_EQ(bake(), RELIEF_INVALID_INPUT);
+    EXPECT_STREQ(relief_last_error(),
+                 "triangle 3 of high mesh 0 has the id 16777216, but ids must be below 16777216");
+    // A program that was compiled before has none of these fields.
+    options.size = offsetof(relief_bake_options, thickness_distance);
+    maps.size = offsetof(relief_bake_maps, bent_normals);
+    result = {};
+    result.size = offsetof(relief_bake_result, occlusion_rays);
+    std::fill(thickness.begin(), thickness.end(), -2.0F);
+    maps.heights = image(curvature, 1, RELIEF_SAMPLE_FLOAT);
+    ASSERT_EQ(bake(), RELIEF_OK) << relief_last_error();
+    EXPECT_THAT(thickness, testing::Each(-2.0F));
+    EXPECT_EQ(result.occlusion_rays, 0U);
+    EXPECT_EQ(result.texels_baked, texels);
 }
 
 struct WrongBake {
