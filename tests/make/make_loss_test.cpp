@@ -219,6 +219,26 @@ TEST_F(MakeLossTest, IsMeasuredAfterEachStage) {
               loss.stages[1].loss.normals.p99);
 }
 
+TEST_LABELS(not_sanitized);
+TEST_F(MakeLossTest, IsThatOfAllMaterialsOfAnAsset) {
+    LossMeter measuring(ball(), file(), small_pictures());
+    const double before = loss_of(measuring, good).normals.mean;
+    make::Asset divided = good;
+    divided.draw_modes = {{}, {AlphaMode::mask}};
+    const auto count = static_cast<std::uint32_t>(divided.mesh.triangles.size());
+    divided.mesh.material_ranges = {{0, count / 3, 1U}, {count / 3, count - count / 3, 0U}};
+    const std::vector<make::AssetLevel> levels = write_asset(file(), divided, 1);
+    Report report;
+    AssetLoss loss = measuring.measure(file(), report);
+    EXPECT_NEAR(loss.fidelity.normals.mean, before, 1e-3 * before);
+    loss.stages = measuring.measure_stages(file(), divided, loss);
+    ASSERT_EQ(loss.stages.size(), 4U);
+    EXPECT_NEAR(loss.stages[1].loss.normals.mean, loss.fidelity.sampled.normals.mean, 0.3);
+    EXPECT_EQ(loss.stages[3].name, "LOD1");
+    EXPECT_EQ(loss.stages[3].triangles, levels.front().triangles);
+    EXPECT_LT(loss.stages[3].loss.silhouette_pixels, 1.0) << "no triangle is missing";
+}
+
 TEST(LossTable, HasTheStatisticOfTheLimit) {
     AssetLoss loss;
     loss.fidelity.views.resize(12);

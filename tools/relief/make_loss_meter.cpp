@@ -32,14 +32,30 @@ Scene without_textures(Scene scene) {
 }
 
 Scene with_normals(Scene scene, const Image& normal_map) {
-    const Texture* texture = find_texture(scene.materials.front(), TextureSlot::normal);
-    assert(texture != nullptr);
-    scene.images[texture->image].source = Shared<Image>(normal_map);
+    for (const Material& material : scene.materials) {
+        const Texture* texture = find_texture(material, TextureSlot::normal);
+        assert(texture != nullptr);
+        scene.images[texture->image].source = Shared<Image>(normal_map);
+    }
     return scene;
 }
 
-Scene with_mesh(Scene scene, Mesh mesh) {
-    scene.meshes[scene.instances.front().mesh] = Shared<Mesh>(std::move(mesh));
+/// Returns the primitives of each mesh of an asset, which are those of its levels.
+std::vector<std::vector<GltfPrimitiveId>> levels_of(const GltfDocument& document) {
+    std::vector<std::vector<GltfPrimitiveId>> levels;
+    for (const GltfPrimitiveId id : document.triangle_primitives()) {
+        if (levels.empty() || levels.back().front().mesh != id.mesh) levels.emplace_back();
+        levels.back().push_back(id);
+    }
+    return levels;
+}
+
+/// Replaces the meshes of the finest level, one for each material, by those of another.
+Scene with_level(Scene scene, const GltfDocument& document,
+                 const std::vector<GltfPrimitiveId>& level) {
+    assert(level.size() == scene.instances.size());
+    for (std::size_t i = 0; i < level.size(); ++i)
+        scene.meshes[scene.instances[i].mesh] = Shared<Mesh>(document.mesh(level[i]));
     return scene;
 }
 
@@ -103,11 +119,13 @@ std::vector<LossStage> LossMeter::measure_stages(const std::filesystem::path& as
     stages.push_back({"coded", triangles, loss.fidelity.sampled, distance});
     Report ignored;
     const GltfDocument document = GltfDocument::read(asset, ignored);
-    const std::vector<GltfPrimitiveId> primitives = document.triangle_primitives();
-    for (std::size_t level = 1; level < primitives.size(); ++level) {
-        Scene lower = with_mesh(scene, document.mesh(primitives[level]));
+    const std::vector<std::vector<GltfPrimitiveId>> levels = levels_of(document);
+    for (std::size_t level = 1; level < levels.size(); ++level) {
+        const Scene lower = with_level(scene, document, levels[level]);
         const SurfaceDistance of_level = implementation_->distance_of(lower);
-        const std::size_t count = lower.meshes[lower.instances.front().mesh]->triangles.size();
+        std::size_t count = 0;
+        for (const GltfPrimitiveId id : levels[level])
+            count += document.mesh(id).triangles.size();
         stages.push_back(
             {fmt::format("LOD{}", level), count, meter.measure_sampled(lower), of_level});
     }
