@@ -7,11 +7,14 @@
 #include <optional>
 #include <span>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "relief/make/asset.h"
 #include "relief/mesh/gltf_document.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/model.h"
+#include "relief/mesh/tangents.h"
 
 namespace relief::make {
 namespace {
@@ -29,8 +32,21 @@ void add_of_level(const Finding& finding, Report& problems) {
     problems.add(theirs);
 }
 
+/// Returns the method of the tangents of the finest mesh. Its primitives have those of the whole
+/// mesh, which differ at their borders from those that each would have alone.
+IdentifiedTangents tangents_of_all(const GltfDocument& document, std::size_t materials) {
+    std::vector<MapModelPart> parts;
+    for (const GltfPrimitiveId id : document.triangle_primitives()) {
+        if (parts.size() < materials) parts.push_back({"", document.mesh(id)});
+    }
+    return identify_tangents(joined(std::move(parts)));
+}
+
 /// \param materials  the number of primitives of the finest mesh
-void check_meshes(const CheckedModel& checked, std::size_t materials, Report& problems) {
+void check_meshes(const CheckedModel& checked, const GltfDocument& document, std::size_t materials,
+                  Report& problems) {
+    std::optional<IdentifiedTangents> of_all;
+    if (materials > 1) of_all = tangents_of_all(document, materials);
     for (const CheckedPart& part : checked.parts) {
         const auto index = static_cast<std::size_t>(&part - checked.parts.data());
         for (const Finding& finding : part.problems.findings())
@@ -38,9 +54,12 @@ void check_meshes(const CheckedModel& checked, std::size_t materials, Report& pr
         const bool has_frames = part.tangents && !part.tangents->identified.agreements.empty();
         if (!has_frames) {
             problems.add("mesh without tangents", "primitive", index, outcome);
-        } else if (part.tangents->identified.method != TangentMethod::mikktspace &&
-                   std::ranges::count(part.tangents->identified.equivalent_methods,
-                                      TangentMethod::mikktspace) == 0) {
+            continue;
+        }
+        const IdentifiedTangents& identified =
+            of_all && index < materials ? *of_all : part.tangents->identified;
+        if (identified.method != TangentMethod::mikktspace &&
+            std::ranges::count(identified.equivalent_methods, TangentMethod::mikktspace) == 0) {
             problems.add("tangents that are not MikkTSpace's", "primitive", index, outcome);
         }
     }
@@ -110,8 +129,8 @@ Report verify_asset(const std::filesystem::path& file, const Asset& asset) {
     Report problems;
     problems.merge(reading);
     const std::vector<DrawMode> modes = draw_modes_of(asset);
-    check_meshes(check_model(model, reading, true), modes.size(), problems);
     const auto& document = std::get<GltfDocument>(model);
+    check_meshes(check_model(model, reading, true), document, modes.size(), problems);
     const GltfView view = document.view();
     if (view.materials.size() != modes.size()) {
         problems.add(fmt::format("another number of materials than {}", modes.size()), "material",

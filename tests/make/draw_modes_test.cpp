@@ -163,6 +163,54 @@ TEST(DrawModes, SeeOnlyTheirOwnSurface) {
     EXPECT_EQ(transparent_share(make_asset(iris_and_cornea(), options)), 1.0);
 }
 
+TEST(DrawModes, StayOnAClosedSurface) {
+    // A ball with a blended cap, which shares vertices with the rest.
+    AssetSource source;
+    source.name = "ball";
+    source.mesh = test::sphere(48, 24);
+    source.mesh.normals.clear();
+    source.mesh.texcoords.clear();
+    source.mesh.tangents.clear();
+    const auto is_opaque = [&](const glm::uvec3& t) {
+        const std::vector<glm::vec3>& at = source.mesh.positions;
+        return at[t.x].y + at[t.y].y + at[t.z].y < 2.4F;
+    };
+    std::vector<glm::uvec3>& triangles = source.mesh.triangles;
+    const auto middle = std::stable_partition(triangles.begin(), triangles.end(), is_opaque);
+    const auto first = static_cast<std::uint32_t>(middle - triangles.begin());
+    const auto count = static_cast<std::uint32_t>(triangles.size());
+    source.mesh.material_ranges = {{0, first, 0U}, {first, count - first, 1U}};
+    source.materials.resize(2);
+    source.draw_modes = {{}, {AlphaMode::blend}};
+    source.materials[1].opacity = 0.25F;
+    AssetOptions options;
+    options.triangles = 300;
+    options.size = {64, 64};
+    options.padding = 2;
+    options.occlusion = false;
+    options.remesh = Remeshing::always;
+    options.resolution = 24;
+    const Asset asset = make_asset(source, options);
+    ASSERT_EQ(asset.draw_modes.size(), 2U);
+    double blended_height = 0.0;
+    std::size_t blended = 0;
+    for (const MaterialRange& range : asset.mesh.material_ranges) {
+        for (std::uint32_t i = 0; range.material == 1U && i < range.triangle_count; ++i) {
+            const glm::uvec3& t = asset.mesh.triangles[range.first_triangle + i];
+            const std::vector<glm::vec3>& at = asset.mesh.positions;
+            blended_height += (at[t.x].y + at[t.y].y + at[t.z].y) / 3.0;
+            ++blended;
+        }
+    }
+    ASSERT_GT(blended, 5U);
+    EXPECT_GT(blended_height / static_cast<double>(blended), 0.8);
+    // The few blended triangles have the tangents of the whole mesh.
+    const test::TemporaryDirectory folder;
+    write_asset(folder / "a.glb", asset, 0);
+    const Report problems = verify_asset(folder / "a.glb", asset);
+    EXPECT_EQ(problems.count("tangents that are not MikkTSpace's"), 0U);
+}
+
 TEST(DrawModes, HaveOneLimitForMaskedMaterials) {
     AssetSource source = square();
     set_alpha(source, 0, {AlphaMode::mask, 0.25F}, 0.375F);
