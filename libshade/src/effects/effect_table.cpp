@@ -198,10 +198,10 @@ EffectRow texture_row() {
 }
 
 Decision of_vertex_colors(Subject s) {
-    return {s.tinted, fmt::format("mesh '{}' has {}", s.mesh.name,
-                                  s.mesh.colors.empty() ? "none"
-                                  : s.tinted            ? "them"
-                                                        : "only white ones")};
+    // Without the name, so that such meshes share their reasons.
+    if (s.mesh.colors.empty()) return {false, "the mesh has none"};
+    return {s.tinted,
+            fmt::format("mesh '{}' has {}", s.mesh.name, s.tinted ? "them" : "only white ones")};
 }
 
 /// Alpha matters only if something makes it smaller than 1.

@@ -5,8 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <optional>
+#include <string>
+#include <unordered_map>
 #include <utility>
 
 #include "effects/features.h"
@@ -31,6 +34,7 @@ DrawDecisions decide(const Scene& scene, const Material& material, const std::st
                      ShadowTerm shadow) {
     const DrawSubject subject = draw_subject(scene, material, name, mesh, instance, shadow);
     DrawDecisions decisions;
+    decisions.reasons.reserve(effect_rows().size() + 1);  // And that of computed tangents.
     Features requested = subject.lights;
     requested.output = output;
     for (const EffectRow& row : effect_rows()) {
@@ -77,6 +81,30 @@ DrawPlan plan_draw(const Scene& scene, std::size_t instance, const MaterialRange
     return {instance, range, f, std::move(decisions.reasons), needs_tangents};
 }
 
+/// Equal lists of reasons, in one copy, as those of most meshes with the same material.
+class SharedReasons {
+  public:
+    EffectReasons share(EffectReasons reasons) {
+        std::size_t hash = 0;
+        for (const EffectReason& reason : reasons)
+            hash = 31 * hash + 2 * std::hash<std::string>()(reason.reason) + (reason.on ? 1 : 0);
+        const auto [first, last] = known_.equal_range(hash);
+        const auto known = std::find_if(
+            first, last, [&](const auto& entry) { return are_equal(*entry.second, *reasons); });
+        return known == last ? known_.emplace(hash, std::move(reasons))->second : known->second;
+    }
+
+  private:
+    static bool are_equal(const std::vector<EffectReason>& a, const std::vector<EffectReason>& b) {
+        return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                          [](const EffectReason& x, const EffectReason& y) {
+                              return x.on == y.on && x.effect == y.effect && x.reason == y.reason;
+                          });
+    }
+
+    std::unordered_multimap<std::size_t, EffectReasons> known_;
+};
+
 /// Plans draws. Only poses and open shares distinguish the instances of a mesh, so that all others
 /// share one plan for each material.
 class DrawPlanner {
@@ -86,10 +114,9 @@ class DrawPlanner {
 
     DrawPlan plan(std::size_t index, const MaterialRange& range) {
         const Instance& instance = scene_.instances[index];
-        if (instance.pose || !instance.open_shares->empty())
-            return plan_draw(scene_, index, range, output_, shadow_);
+        if (instance.pose || !instance.open_shares->empty()) return new_plan(index, range);
         const auto [entry, is_new] = plans_.try_emplace({instance.mesh, range.material});
-        if (is_new) entry->second = plan_draw(scene_, index, range, output_, shadow_);
+        if (is_new) entry->second = new_plan(index, range);
         DrawPlan plan = entry->second;
         plan.instance = index;
         plan.range = range;
@@ -99,10 +126,17 @@ class DrawPlanner {
   private:
     using Key = std::pair<std::size_t, std::optional<std::uint32_t>>;
 
+    DrawPlan new_plan(std::size_t index, const MaterialRange& range) {
+        DrawPlan plan = plan_draw(scene_, index, range, output_, shadow_);
+        plan.reasons = reasons_.share(std::move(plan.reasons));
+        return plan;
+    }
+
     const Scene& scene_;
     OutputCoding output_;
     ShadowTerm shadow_;
     std::map<Key, DrawPlan> plans_;
+    SharedReasons reasons_;
 };
 
 /// Sets a frame-wide effect and adds its reason.

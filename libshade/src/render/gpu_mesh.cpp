@@ -226,17 +226,18 @@ void bind_texels(const gl::Api& api, TextureUnit unit, const gl::Texture& textur
 
 std::shared_ptr<GpuMesh> MeshCache::get(const Shared<Mesh>& mesh, const PlannedStreams& streams,
                                         Report& report) {
-    auto entry = std::find_if(meshes_.begin(), meshes_.end(), [&](const Entry& known) {
-        return known.streams == streams && known.identity.is(mesh);
+    const auto [first, last] = meshes_.equal_range(&*mesh);
+    auto entry = std::find_if(first, last, [&](const auto& known) {
+        return known.second.streams == streams && known.second.identity.is(mesh);
     });
-    if (entry == meshes_.end()) {
+    if (entry == last) {
         Report findings;
         std::shared_ptr<GpuMesh> made = uploaded(*api_, mesh, streams, findings);
-        meshes_.push_back({mesh.identity(), streams, std::move(findings), std::move(made)});
-        entry = std::prev(meshes_.end());
+        entry = meshes_.emplace(
+            &*mesh, Entry{mesh.identity(), streams, std::move(findings), std::move(made)});
     }
-    report.merge(entry->findings);
-    return entry->mesh;
+    report.merge(entry->second.findings);
+    return entry->second.mesh;
 }
 
 void PlannedDeformation::add(const PlannedInterface& planned) {
@@ -352,21 +353,23 @@ std::shared_ptr<const GpuDeformation> MeshCache::get(const Shared<Mesh>& mesh,
                                                      const MeshPose& pose,
                                                      const PlannedDeformation& planned) {
     const std::size_t joints = pose.joint_matrices.size();
-    const auto known = std::find_if(
-        deformations_.begin(), deformations_.end(), [&](const DeformationEntry& entry) {
-            return entry.joints == joints && entry.planned == planned &&
-                   entry.mesh.lock() == uploaded && entry.identity.is(pose.deformation);
-        });
-    if (known != deformations_.end()) return known->deformation;
+    const auto [first, last] = deformations_.equal_range(uploaded.get());
+    const auto known = std::find_if(first, last, [&](const auto& item) {
+        const DeformationEntry& entry = item.second;
+        return entry.joints == joints && entry.planned == planned &&
+               entry.mesh.lock() == uploaded && entry.identity.is(pose.deformation);
+    });
+    if (known != last) return known->second.deformation;
     auto made = std::make_shared<const GpuDeformation>(*api_, mesh, *uploaded, pose, planned);
-    deformations_.push_back({pose.deformation.identity(), joints, planned, uploaded, made});
+    deformations_.emplace(uploaded.get(), DeformationEntry{pose.deformation.identity(), joints,
+                                                           planned, uploaded, made});
     return made;
 }
 
 void MeshCache::drop_unused() {
     std::erase_if(deformations_,
-                  [](const DeformationEntry& entry) { return entry.deformation.use_count() == 1; });
-    std::erase_if(meshes_, [](const Entry& entry) { return entry.mesh.use_count() == 1; });
+                  [](const auto& entry) { return entry.second.deformation.use_count() == 1; });
+    std::erase_if(meshes_, [](const auto& entry) { return entry.second.mesh.use_count() == 1; });
 }
 
 SortedTriangles::SortedTriangles(const Mesh& mesh, const MaterialRange& range) {

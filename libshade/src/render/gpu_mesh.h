@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "gl/resources.h"
@@ -167,8 +168,9 @@ class MeshCache {
     };
 
     const gl::Api* api_;
-    std::vector<Entry> meshes_;
-    std::vector<DeformationEntry> deformations_;
+    // By address, which is not reused while an entry exists: identities keep the memory.
+    std::unordered_multimap<const Mesh*, Entry> meshes_;
+    std::unordered_multimap<const GpuMesh*, DeformationEntry> deformations_;
 };
 
 /// Blended triangles, sorted by their centers along the line of sight, farthest first. That is the

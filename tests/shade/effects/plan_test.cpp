@@ -191,6 +191,22 @@ TEST(EffectPlan, DrawsThatAreAlikeShareTheirReasons) {
     EXPECT_EQ(plan.draws[1].instance, 1U);
 }
 
+TEST(EffectPlan, MeshesWithEqualReasonsShareThem) {
+    Scene scene = lit_scene(gray());
+    scene.meshes.push_back(scene.meshes[0]);
+    scene.meshes[1].edit().name = "another";  // No reason names a mesh that has nothing special.
+    scene.instances.push_back(scene.instances[0]);
+    scene.instances[1].mesh = 1;
+    FramePlan plan = plan_effects(scene, {.samples = 1});
+    EXPECT_EQ(&*plan.draws.at(0).reasons, &*plan.draws.at(1).reasons);
+
+    scene.meshes[1].edit().colors.assign(scene.meshes[1]->positions.size(), glm::vec4(0.5F));
+    plan = plan_effects(scene, {.samples = 1});
+    EXPECT_NE(&*plan.draws[0].reasons, &*plan.draws[1].reasons);
+    EXPECT_FALSE(reason(plan.draws[0].reasons, "vertex colors").on);
+    EXPECT_TRUE(reason(plan.draws[1].reasons, "vertex colors").on);
+}
+
 TEST(EffectPlan, ExplainsEveryEffect) {
     const FramePlan plan = plan_effects(lit_scene(gray()), {.samples = 1});
     // There is a reason for every effect, and one for computed tangents.

@@ -49,6 +49,7 @@ class ContentCount {
 
     void take_all() {
         take_accessors();
+        take_materials();
         take_primitives();
         take_instances();
         take_skins();
@@ -75,6 +76,12 @@ class ContentCount {
         }
     }
 
+    void take_materials() {
+        constexpr std::size_t bytes_per_material = 2048;
+        budget_.take(array_in(root_, "materials").size(), bytes_per_material,
+                     [] { return "materials"; });
+    }
+
     void take_primitives() {
         const Json& meshes = array_in(root_, "meshes");
         for (std::size_t i = 0; i < meshes.size(); ++i) {
@@ -84,12 +91,16 @@ class ContentCount {
         }
     }
 
-    /// The arrays of a primitive: floats and indices of 32 bits, for the vertices that it uses.
+    /// What drawing a primitive needs: half of it for its buffers and uniforms, and half for the
+    /// reasons of its effects. And its arrays: floats and indices of 32 bits, for the vertices that
+    /// it uses.
     void take_primitive(const Json& primitive, std::size_t mesh, std::size_t number) {
+        constexpr std::size_t bytes_per_primitive = 20480;
         const auto name = [&] { return fmt::format("meshes[{}].primitives[{}]", mesh, number); };
         const auto position = index_in(primitive["attributes"], "POSITION");
         if (!position) return;
         const PrimitiveSize size = primitive_size(root_, primitive, *position);
+        budget_.take(1, bytes_per_primitive, name);
         budget_.take(size.corners, corner_size(primitive), name);
         const auto take_attributes = [&](const Json& attributes) {
             for (const auto& [semantic, index] : attributes.items()) {

@@ -210,9 +210,9 @@ bool has_unknown_extension(const Json& root);
 ///         that relief does not support
 void check_gltf(const Json& root);
 
-/// Draws from the budget what the document takes as plain arrays and instances: accessors without
-/// data, each primitive, instance, skin and animation channel, and the bytes of embedded images.
-/// Accessors and buffer views that several of them share count for each.
+/// Draws from the budget what the document takes as plain arrays and when it is drawn: accessors
+/// without data, each material, primitive, instance, skin and animation channel, and the bytes of
+/// embedded images. Accessors and buffer views that several of them share count for each.
 ///
 /// \throws InvalidInput naming the first that exceeds the budget
 void take_contents(GltfContents& contents);

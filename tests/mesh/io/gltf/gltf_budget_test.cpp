@@ -110,6 +110,32 @@ TEST_F(GltfBudget, LimitsInstances) {
     EXPECT_THAT(error_of(root), HasSubstr("nodes["));
 }
 
+TEST_F(GltfBudget, LimitsWhatDrawingNeeds) {
+    // A node that instances a mesh takes 2.5 KiB, but at least 10 bytes of the file.
+    json nodes = thousand_positions();
+    for (int i = 1; i < 120'000; ++i)
+        nodes["nodes"].push_back({{"mesh", 0}});
+    EXPECT_EQ(error_of(nodes), "no error");
+
+    const auto with_primitives = [](std::size_t count) {
+        json root = thousand_positions();
+        root["accessors"][0]["count"] = 3;
+        for (std::size_t i = 1; i < count; ++i)
+            root["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}});
+        return root;
+    };
+    // 20 KiB for each primitive, and 2.5 for its instance.
+    EXPECT_EQ(error_of(with_primitives(11'000)), "no error");
+    EXPECT_THAT(error_of(with_primitives(14'000)), HasSubstr("meshes[0].primitives[13"));
+
+    json root = thousand_positions();
+    root["materials"] = json::array();
+    for (int i = 0; i < 140'000; ++i)
+        root["materials"].push_back(json::object());
+    EXPECT_THAT(error_of(root), HasSubstr("materials: the contents of the file up to here take "
+                                          "273.4 MiB"));
+}
+
 TEST_F(GltfBudget, LimitsInstancesThatAreJoinedInWorldSpace) {
     json root = thousand_positions();
     for (int i = 1; i <= 200; ++i) {
