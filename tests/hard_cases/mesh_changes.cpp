@@ -91,6 +91,7 @@ void add_collapsed(MeshVariant& variant, Dice& dice) {
             repeat(mesh.normals);
             repeat(mesh.texcoords);
             repeat(mesh.tangents);
+            repeat(mesh.colors);
         }
         variant.add_triangle(dice.one_in(4) ? glm::uvec3(a, same, a) : glm::uvec3(a, b, same),
                              dice.below(3));

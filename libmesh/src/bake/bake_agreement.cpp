@@ -35,7 +35,10 @@ constexpr double large_distance = 0.05;
 /// Ratios of sizes within this factor are differences of detail.
 constexpr double same_size = 1.02;
 
-double area_of(std::span<const glm::vec3> positions, const glm::uvec3& t, glm::dvec3& cross) {
+double area_of(std::span<const glm::vec3> positions, const glm::uvec3& triangle,
+               glm::dvec3& cross) {
+    const glm::uvec3 t =
+        from_first_position(positions, triangle);  // As HighSurface::face_normal().
     const glm::dvec3 a(positions[t.x]);
     cross = glm::cross(glm::dvec3(positions[t.y]) - a, glm::dvec3(positions[t.z]) - a);
     const double area = glm::length(cross);

@@ -69,6 +69,17 @@ glm::dvec3 nearest_point(const glm::dvec3& p, const Corners& corners) {
     return a + vb / sum * ab + vc / sum * ac;
 }
 
+/// Returns the triangle rotated to begin with its first corner by position, so that rounding does
+/// not depend on the given first corner.
+Corners from_first_position(Corners corners) {
+    const auto first = std::min_element(
+        corners.begin(), corners.end(), [](const glm::dvec3& p, const glm::dvec3& q) {
+            return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+        });
+    std::rotate(corners.begin(), first, corners.end());
+    return corners;
+}
+
 template <typename Number>
 struct ClusteredMesh : EmbreeScene::MeshOfScene {
     std::uint32_t name = 0;
@@ -86,7 +97,7 @@ struct ClusteredMesh : EmbreeScene::MeshOfScene {
         const TriangleCluster<Number>& all = shapes.clusters[cluster];
         double distance = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < all.size && all.triangles[i] != all.none; ++i) {
-            const glm::dvec3 nearest = nearest_point(point, all.corners_of(i));
+            const glm::dvec3 nearest = nearest_point(point, from_first_position(all.corners_of(i)));
             distance = std::min(distance, glm::distance(point, nearest));
         }
         return distance;

@@ -17,6 +17,7 @@
 #include "bake/texel_frame.h"
 #include "geometry/direction.h"
 #include "image/normal_coding.h"
+#include "parallel.h"
 #include "relief/mesh/curvature.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/report.h"
@@ -273,13 +274,25 @@ void check(const HighMaterials& detail) {
     }
 }
 
+glm::uvec3 from_first_position(std::span<const glm::vec3> positions, const glm::uvec3& triangle) {
+    const auto is_before = [&](std::uint32_t a, std::uint32_t b) {
+        const glm::vec3& p = positions[a];
+        const glm::vec3& q = positions[b];
+        return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+    };
+    const std::uint32_t x = triangle.x, y = triangle.y, z = triangle.z;
+    if (is_before(y, x) && !is_before(z, y)) return {y, z, x};
+    if (is_before(z, x)) return {z, x, y};
+    return triangle;
+}
+
 HighSurface::HighSurface(std::span<const Mesh> meshes, const BakeOptions& options, Report& report)
     : made_(meshes.size()) {
     std::vector<RayMesh> ray_meshes;
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         validate(meshes[i]);
         entries_.push_back(entry(meshes[i], i, options, report));
-        ray_meshes.push_back({entries_[i].mesh->positions, entries_[i].mesh->triangles});
+        ray_meshes.push_back({entries_[i].mesh->positions, entries_[i].triangles});
     }
     scene_ = std::make_unique<RayScene>(std::move(ray_meshes), expected_rays(options),
                                         [this](const MetTriangle& a, const MetTriangle& b) {
@@ -351,8 +364,13 @@ HighSurface::Entry HighSurface::entry(const Mesh& mesh, std::size_t index,
         }
         if (!result.split_texcoords.empty()) result.color_texcoords = result.split_texcoords;
     }
+    result.triangles = result.mesh->triangles;
+    parallel_for(result.triangles.size(), 16384, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t)
+            result.triangles[t] = from_first_position(result.mesh->positions, result.triangles[t]);
+    });
     if (layers.curvature)
-        result.curvature = mean_curvatures(result.mesh->positions, result.mesh->triangles, report);
+        result.curvature = mean_curvatures(result.mesh->positions, result.triangles, report);
     if (layers.ids) result.names = names_of(mesh, options);
     return result;
 }
@@ -382,9 +400,9 @@ glm::dvec3 HighSurface::face_normal(const RayHit& hit) const {
 }
 
 glm::dvec3 HighSurface::smooth_normal(const RayHit& hit, std::size_t sample, Report& report) const {
-    const Mesh& mesh = *entries_[hit.mesh].mesh;
-    const glm::dvec3 unit = direction_or_zero(
-        interpolated<glm::vec3>(mesh.normals, mesh.triangles[hit.triangle], hit, glm::dvec3(0.0)));
+    const Entry& entry = entries_[hit.mesh];
+    const glm::dvec3 unit = direction_or_zero(interpolated<glm::vec3>(
+        entry.mesh->normals, entry.triangles[hit.triangle], hit, glm::dvec3(0.0)));
     if (unit != glm::dvec3(0.0)) return unit;
     report.add("high normal without direction", "texel", sample, "is its triangle's");
     return face_normal(hit);
@@ -396,11 +414,12 @@ glm::dvec3 HighSurface::normal(const RayHit& hit, std::size_t sample, Report& re
     if (hit_material == nullptr || !hit_material->normal_map || mesh.tangents.empty() ||
         mesh.texcoords.empty())
         return smooth_normal(hit, sample, report);
-    TexelFrame frame(mesh, hit.triangle, hit.weights);
+    const glm::uvec3& corners = entries_[hit.mesh].triangles[hit.triangle];
+    TexelFrame frame(mesh, corners, hit.weights);
     const GltfTextureTransform& transform = hit_material->normal_map->texture.transform;
     if (transform != GltfTextureTransform{}) frame = frame.transformed_by(transform);
     const glm::dvec2 texcoord =
-        interpolated<glm::vec2>(mesh.texcoords, mesh.triangles[hit.triangle], hit, glm::dvec2(0.0));
+        interpolated<glm::vec2>(mesh.texcoords, corners, hit, glm::dvec2(0.0));
     const glm::dvec3 unit =
         direction_or_zero(frame.to_object(normal_at(*hit_material->normal_map, texcoord)));
     if (frame.is_usable() && unit != glm::dvec3(0.0)) return unit;
@@ -415,14 +434,14 @@ glm::dvec3 HighSurface::position(const RayHit& hit) const {
 
 double HighSurface::curvature(const RayHit& hit) const {
     const Entry& entry = entries_[hit.mesh];
-    const glm::uvec3& corners = entry.mesh->triangles[hit.triangle];
+    const glm::uvec3& corners = entry.triangles[hit.triangle];
     const double value = interpolated<float>(entry.curvature, corners, hit, 0.0);
     return hit.faces_origin ? value : -value;
 }
 
 glm::dvec3 HighSurface::color(const RayHit& hit) const {
     const Entry& entry = entries_[hit.mesh];
-    const glm::uvec3& corners = entry.mesh->triangles[hit.triangle];
+    const glm::uvec3& corners = entry.triangles[hit.triangle];
     glm::dvec3 color(1.0);
     if (!entry.mesh->colors.empty()) {
         color =
@@ -457,7 +476,7 @@ glm::dvec3 HighSurface::emission(const RayHit& hit) const {
 
 glm::dvec2 HighSurface::color_texcoord(const RayHit& hit) const {
     const Entry& entry = entries_[hit.mesh];
-    return interpolated<glm::vec2>(entry.color_texcoords, entry.mesh->triangles[hit.triangle], hit,
+    return interpolated<glm::vec2>(entry.color_texcoords, entry.triangles[hit.triangle], hit,
                                    glm::dvec2(0.0));
 }
 
@@ -467,7 +486,7 @@ double HighSurface::opacity(const RayHit& hit) const {
     const Entry& entry = entries_[hit.mesh];
     auto opacity = static_cast<double>(*hit_material->opacity);
     if (!entry.mesh->colors.empty()) {
-        const glm::uvec3& corners = entry.mesh->triangles[hit.triangle];
+        const glm::uvec3& corners = entry.triangles[hit.triangle];
         opacity *= interpolated<glm::vec4>(entry.mesh->colors, corners, hit, glm::dvec4(0.0)).w;
     }
     if (hit_material->color_texture && !entry.color_texcoords.empty())
@@ -512,16 +531,15 @@ HighSurface::CurvatureRange HighSurface::curvature_range() const {
         for (const float value : entry.curvature)
             range.max = std::max(range.max, static_cast<double>(std::abs(value)));
         // A large mesh is sampled with a stride.
-        const std::size_t stride = entry.mesh->triangles.size() / max_area_samples + 1;
-        for (std::size_t triangle = 0; triangle < entry.mesh->triangles.size();
-             triangle += stride) {
+        const std::size_t stride = entry.triangles.size() / max_area_samples + 1;
+        for (std::size_t triangle = 0; triangle < entry.triangles.size(); triangle += stride) {
             const auto corners = scene_->corners(static_cast<std::uint32_t>(i),
                                                  static_cast<std::uint32_t>(triangle));
             const double share =
                 glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
             if (entry.curvature.empty() || !std::isfinite(share)) continue;
             for (int corner = 0; corner < 3; ++corner) {
-                const std::uint32_t vertex = entry.mesh->triangles[triangle][corner];
+                const std::uint32_t vertex = entry.triangles[triangle][corner];
                 curvatures.emplace_back(std::abs(entry.curvature[vertex]), share);
                 area += share;
             }

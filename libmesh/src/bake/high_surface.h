@@ -25,6 +25,10 @@ glm::dvec3 color_at(const SurfaceTexture& texture, const glm::dvec2& texcoord);
 /// Returns the normal of a normal map, y up, with x and y scaled; its length is arbitrary.
 glm::dvec3 normal_at(const SurfaceNormalMap& map, const glm::dvec2& texcoord);
 
+/// Returns the triangle rotated to begin with its first corner by position. Sums over corners in
+/// this order are rounded independently of the given first corner.
+glm::uvec3 from_first_position(std::span<const glm::vec3> positions, const glm::uvec3& triangle);
+
 /// Checks the images, materials and texture coordinates of a high mesh.
 /// \throws InvalidInput if an image is missing, empty or has too few channels, if the mesh names a
 ///         missing material, or if texture coordinates and vertices differ in number
@@ -95,6 +99,7 @@ class HighSurface {
     /// A mesh with its attributes.
     struct Entry {
         const Mesh* mesh = nullptr;
+        std::vector<glm::uvec3> triangles;      ///< Those of the mesh, from_first_position().
         const HighMaterials* detail = nullptr;  ///< Null if no layer needs it.
         std::span<const glm::vec2> color_texcoords;
         std::vector<glm::vec2>

@@ -20,8 +20,11 @@ struct TexelFrame {
     double volume;
 
     /// \param weights  barycentric
-    TexelFrame(const Mesh& mesh, std::uint32_t triangle, const glm::dvec3& weights) {
-        const glm::uvec3 corners = mesh.triangles[triangle];
+    TexelFrame(const Mesh& mesh, std::uint32_t triangle, const glm::dvec3& weights)
+        : TexelFrame(mesh, mesh.triangles[triangle], weights) {}
+
+    /// \param corners  of a triangle, in the order of the weights
+    TexelFrame(const Mesh& mesh, const glm::uvec3& corners, const glm::dvec3& weights) {
         glm::dvec4 t(0.0);
         normal = glm::dvec3(0.0);
         for (int i = 0; i < 3; ++i) {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Computes the curvature of each vertex separately, from the ring of its triangles in the order of
-// their vertices.
+// Computes the curvature of each vertex separately, from the ring of its triangles. Sums are in the
+// order of positions and values, so that they do not depend on the order of vertices.
 #include "relief/mesh/curvature.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <compare>
+#include <numeric>
 #include <optional>
 
 #include "geometry/check_triangles.h"
@@ -115,12 +118,32 @@ bool has_area(const glm::dvec3& b, const glm::dvec3& c) {
     return area2 > 0.0 && std::isfinite(area2);
 }
 
-/// Returns the curvature, or none if it is undefined.
+/// Compares positions by their bits, an order that also those that are not finite have.
+std::strong_ordering compare_bits(const glm::vec3& a, const glm::vec3& b) {
+    for (int i = 0; i < 3; ++i) {
+        const auto order =
+            std::bit_cast<std::uint32_t>(a[i] + 0.0F) <=> std::bit_cast<std::uint32_t>(b[i] + 0.0F);
+        if (order != 0) return order;
+    }
+    return std::strong_ordering::equal;
+}
+
+/// Sorts spokes by the positions of their vertices.
+void sort_by_position(std::span<const glm::vec3> positions, std::span<Spoke> ring) {
+    std::sort(ring.begin(), ring.end(), [&](const Spoke& a, const Spoke& b) {
+        const auto order = compare_bits(positions[a.next], positions[b.next]);
+        if (order != 0) return order < 0;
+        return compare_bits(positions[a.last], positions[b.last]) < 0;
+    });
+}
+
+/// Returns the curvature, or none if it is undefined. Sorts the ring by position.
 std::optional<double> curvature_at(std::span<const glm::vec3> positions, std::size_t vertex,
-                                   std::span<const Spoke> sorted) {
+                                   std::span<Spoke> ring) {
     VertexSum sum;
     const glm::dvec3 here(positions[vertex]);
-    for (const Spoke& spoke : sorted) {
+    sort_by_position(positions, ring);
+    for (const Spoke& spoke : ring) {
         const glm::dvec3 b = glm::dvec3(positions[spoke.next]) - here;
         const glm::dvec3 c = glm::dvec3(positions[spoke.last]) - here;
         if (has_area(b, c)) sum.add(b, c);
@@ -141,15 +164,14 @@ std::optional<double> mean_around(std::span<const Spoke> sorted, const std::vect
         around.insert(around.end(), {spoke.next, spoke.last});
     std::sort(around.begin(), around.end());
     around.erase(std::unique(around.begin(), around.end()), around.end());
-    double sum = 0.0;
-    int count = 0;
+    std::vector<float> regular;
     for (const std::uint32_t vertex : around) {
-        if (kinds[vertex] != RingKind::closed) continue;
-        sum += static_cast<double>(values[vertex]);
-        ++count;
+        if (kinds[vertex] == RingKind::closed) regular.push_back(values[vertex]);
     }
-    if (count == 0) return std::nullopt;
-    return sum / count;
+    if (regular.empty()) return std::nullopt;
+    std::sort(regular.begin(), regular.end());
+    return std::accumulate(regular.begin(), regular.end(), 0.0) /
+           static_cast<double>(regular.size());
 }
 
 void count_flat_triangles(std::span<const glm::vec3> positions,
@@ -187,7 +209,7 @@ std::vector<float> mean_curvatures(std::span<const glm::vec3> positions,
                                });
     };
     each([&](std::size_t i, std::vector<std::uint32_t>& scratch, Report& found) {
-        const std::span<const Spoke> ring = rings.sorted(i);
+        const std::span<Spoke> ring = rings.sorted(i);
         kinds[i] = is_closed(ring, scratch) ? RingKind::closed : RingKind::open;
         if (kinds[i] == RingKind::open) return;
         const std::optional<double> value = curvature_at(positions, i, ring);

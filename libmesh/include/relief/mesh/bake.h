@@ -546,12 +546,17 @@ struct BakePart {
 /// inside of several intersecting solids, their outermost surface counts. See ray_scene.h.
 ///
 /// Hits of Embree are refined in double precision. The result is the same bits for any number of
-/// threads. The order of triangles and vertices, and the first corners of triangles, change it by
-/// rounding only (a ray that meets an edge may hit its other triangle), with three exceptions: of
-/// identical triangles in the texture the first one wins, automatic_distances() depend on the order
-/// of the low triangles, and repeated high triangles have no curvature. Memory: about 100 bytes per
-/// triangle of the high meshes, and for each map the memory of cover_texels() and about 64 MB, or
-/// 64 rows and twice the padding; never the whole map.
+/// threads, and for any order of triangles and vertices and any first corners of the high meshes.
+/// First corners change only a normal map on high meshes whose MikkTSpace tangents are computed, as
+/// far as these change (tangents.h). Collapsed and repeated high triangles have no influence,
+/// except that the latter have no curvature. The order of the low triangles changes the result in
+/// two cases: of identical triangles in the texture the first one wins, and automatic_distances()
+/// depend on it. Their first corners change it by rounding, because tangents of MikkTSpace do, and
+/// so do sums over corners: normals turn by less than 0.001 degrees, except where a ray that meets
+/// an edge hits its other triangle.
+///
+/// Memory: about 110 bytes per triangle of the high meshes, and for each map the memory of
+/// cover_texels() and about 64 MB, or 64 rows and twice the padding; never the whole map.
 class Baker {
   public:
     /// Prepares the meshes.

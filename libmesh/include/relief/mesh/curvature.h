@@ -27,8 +27,8 @@ namespace RELIEF_API relief {
 /// The value is half of the cotangent Laplacian of the positions, divided by the mixed area of the
 /// vertex, along the angle-weighted normal [Meyer et al. 2003]. At a hard edge it is proportional
 /// to the dihedral angle divided by the width of the adjacent triangles, so it grows with finer
-/// triangulation. Computed in double precision; the same bits for any order of triangles and number
-/// of threads. A million triangles take about 0.1 s on two threads.
+/// triangulation. Computed in double precision; the same bits for any order of triangles and
+/// vertices and number of threads. A million triangles take about 0.1 s on two threads.
 std::vector<float> mean_curvatures(std::span<const glm::vec3> positions,
                                    std::span<const glm::uvec3> triangles,
                                    Report& report = IgnoredReport());
