@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -270,11 +271,14 @@ std::string map_difference(const Baked& before, const Baked& after, double scale
         if (tolerances.degrees > 0.0 && degrees <= tolerances.degrees) continue;
         add(texel, fmt::format("a normal turned by {} degrees", degrees));
     }
+    constexpr float largest = std::numeric_limits<float>::max();
     const auto compare = [&](const char* name, const std::vector<float>& was,
                              const std::vector<float>& is, double factor, double limit) {
         for (std::size_t i = 0; i < was.size(); ++i) {
             const double value = double(is[i]) / factor;
             if (double(was[i]) == value || std::abs(double(was[i]) - value) <= limit) continue;
+            // The largest float stands for any larger value.
+            if (std::max(std::abs(was[i]), std::abs(is[i])) == largest) continue;
             add(i * texels / was.size(), fmt::format("{} {} became {}", name, was[i], value));
         }
     };
@@ -316,10 +320,14 @@ std::pair<MeshVariant, MeshVariant> changed_pair(const BakePair& pair, const Mes
 }
 
 Tolerances tolerances_of(const MeshVariant& changed, bool changes_low, const BakeCase& bake) {
-    if (!changed.has_rotated_corners) return {};
-    if (!changes_low) {
+    if (!changes_low || !changed.has_rotated_corners) {
         Tolerances tolerances;
-        if (bake.has_normal_map) tolerances.degrees = 0.001;  // MikkTSpace on the high mesh.
+        // Smaller floats have fewer digits.
+        const auto scale = double(std::max(changed.scale, 1.0F / changed.scale));
+        tolerances.length = tolerances.thickness =
+            scale * double(std::numeric_limits<float>::min());
+        if (changed.has_rotated_corners && bake.has_normal_map)
+            tolerances.degrees = 0.001;  // MikkTSpace on the high mesh.
         return tolerances;
     }
     return {.degrees = 0.001,

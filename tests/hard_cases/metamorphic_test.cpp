@@ -53,7 +53,11 @@ std::vector<FrameOptions> all_frame_options() {
         add(options);
         if (mode.value == NormalMode::keep) {
             options.repair = true;
-            add(options);
+            for (const NormalMode repaired :
+                 {NormalMode(NormalWeight::angle), NormalMode::flat, NormalMode::automatic}) {
+                options.if_missing = repaired;
+                add(options);
+            }
         }
         if (mode.value == NormalMode::keep || mode.value == NormalMode::flat) continue;
         for (const double crease : {0.0, 20.0, 45.0, 60.0, 180.0}) {
@@ -67,10 +71,11 @@ std::vector<FrameOptions> all_frame_options() {
 }
 
 std::string text_of(const FrameOptions& options) {
-    return fmt::format("normals {}, tangents {}, crease {}, weld {}, groups {}, repair {}",
+    return fmt::format("normals {}, tangents {}, crease {}, weld {}, groups {}, repair {}, by {}",
                        enum_name(options.normals), enum_name(options.tangents),
                        options.crease_angle ? *options.crease_angle / degree : -1.0,
-                       options.weld_tolerance, options.smoothing_groups, options.repair);
+                       options.weld_tolerance, options.smoothing_groups, options.repair,
+                       enum_name(options.if_missing));
 }
 
 template <glm::length_t size>

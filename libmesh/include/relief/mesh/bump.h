@@ -137,10 +137,10 @@ BumpOptions resolve_options(const ImageView& height, BumpOptions options);
 ///         `wrap`), or by 0 if the image has none
 /// \return three float channels: normalize(-dh/dx, -dh/dy, 1), with y upwards. A constant field and
 ///         a single texel give exactly (0,0,1). Arithmetic::float64 computes in double precision
-///         and rounds once. The result is the same bits for any number of threads. A mirrored map,
-///         or one that is shifted across a border that repeats, gives the corresponding bits; a
-///         transposed one differs by at most 1e-5 degrees, and 1e-3 with Arithmetic::float32.
-///         Factors of powers of two that cancel between heights, strength and texel change nothing
+///         and rounds once. The result is the same bits for any number of threads. For a given
+///         kernel, a mirrored map, or one shifted across a border that repeats, has corresponding
+///         bits; a transposed one differs by at most 1e-5 degrees, and 1e-3 with float32. Powers of
+///         two that cancel between heights, strength and texel change nothing
 /// \throws InvalidInput if the image is empty or has more than one channel, or if the strength, the
 ///         texel or the radius is out of range
 ///
