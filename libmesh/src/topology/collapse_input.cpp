@@ -328,8 +328,9 @@ void set_attributes(CollapseInput& input, const AttributedMesh& surface,
 namespace {
 
 /// Returns the diagonals of the bounding boxes of the parts of a mesh that are connected through
-/// vertices at equal positions, by vertex, in object space; 0 where no finite triangle is.
-std::vector<float> part_sizes(const Mesh& mesh, std::span<const std::uint32_t> classes) {
+/// vertices at equal positions, by vertex, in unit space; 0 where no finite triangle is.
+std::vector<float> part_sizes(const Mesh& mesh, std::span<const std::uint32_t> classes,
+                              const UnitSpace& space) {
     const auto is_on_surface = [&](const glm::uvec3& t) {
         return is_finite(mesh.positions[t.x]) && is_finite(mesh.positions[t.y]) &&
                is_finite(mesh.positions[t.z]);
@@ -353,7 +354,8 @@ std::vector<float> part_sizes(const Mesh& mesh, std::span<const std::uint32_t> c
     for (std::uint32_t v = 0; v < classes.size(); ++v) {
         const Bounds& box = bounds[parts.find(classes[v])];
         if (!box.empty())
-            sizes[v] = static_cast<float>(glm::length(glm::dvec3(box.max) - glm::dvec3(box.min)));
+            sizes[v] = static_cast<float>(space.scale *
+                                          glm::length(glm::dvec3(box.max) - glm::dvec3(box.min)));
     }
     return sizes;
 }
@@ -456,10 +458,10 @@ PreparedMesh prepared(const AttributedMesh& surface, const DecimateOptions& opti
     CollapseInput& input = result.input;
     std::vector<std::uint32_t> classes = weld_positions(mesh.positions);
     Wedges wedges = wedges_of(surface, classes, parts);
-    const std::vector<float> sizes = part_sizes(mesh, classes);
+    const std::vector<float> sizes = part_sizes(mesh, classes, space);
     std::vector<Corner> order = canonical_order(surface, space, parts);
     if (smallest_part > 0.0)
-        leave_out_small_parts(mesh, parts, sizes, smallest_part, order, report);
+        leave_out_small_parts(mesh, parts, sizes, smallest_part * space.scale, order, report);
     result.layers = separate_layers(
         mesh, classes, [&](std::uint32_t triangle) { return parts[triangle]; },
         [&](std::uint32_t vertex, std::uint32_t part) { return wedges.at(vertex, part); }, order,
@@ -475,7 +477,7 @@ PreparedMesh prepared(const AttributedMesh& surface, const DecimateOptions& opti
     input.part_sizes.reserve(input.topology.position_vertex.size());
     for (const std::uint32_t vertex : input.topology.position_vertex) {
         input.positions.push_back(mesh.positions[vertex]);
-        input.part_sizes.push_back(static_cast<float>(sizes[vertex] * space.scale));
+        input.part_sizes.push_back(sizes[vertex]);
     }
     input.fits_positions = options.fit_positions;
     if (options.fit_positions && !result.set_aside.empty()) {
@@ -487,6 +489,12 @@ PreparedMesh prepared(const AttributedMesh& surface, const DecimateOptions& opti
         }
         for (const std::uint32_t vertex : input.topology.position_vertex)
             input.is_fixed.push_back(is_fixed[vertex]);
+    }
+    for (const std::uint32_t t : result.set_aside) {
+        glm::uvec3 triangle{};
+        for (int i = 0; i < 3; ++i)
+            triangle[i] = wedges.vertex[wedges.at(mesh.triangles[t][i], parts[t])];
+        result.set_aside_triangles.push_back(triangle);
     }
     free_memory(input.topology.position_vertex);
     set_wedges(mesh, parts, classes, std::move(wedges), result);

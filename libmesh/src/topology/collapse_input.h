@@ -64,6 +64,8 @@ struct PreparedMesh {
     CollapseInput input;
     std::vector<std::uint32_t> sources;  ///< For each triangle of the surface, that of the mesh.
     std::vector<std::uint32_t> set_aside;
+    /// Their vertices; of equal ones, that of the wedge.
+    std::vector<glm::uvec3> set_aside_triangles;
     std::vector<std::uint32_t> vertex_of_wedge;
     /// Triangles of the mesh at the positions of others, which become what those become.
     TriangleLayers layers;

@@ -110,8 +110,8 @@ Remains gathered_remains(const Mesh& mesh, const Collapsed& collapsed,
             all.emplace_back(layer.triangle, triangle);
         }
     }
-    for (const std::uint32_t t : prepared.set_aside)
-        all.emplace_back(t, mesh.triangles[t]);
+    for (std::size_t i = 0; i < prepared.set_aside.size(); ++i)
+        all.emplace_back(prepared.set_aside[i], prepared.set_aside_triangles[i]);
     std::sort(all.begin(), all.end(),
               [](const auto& a, const auto& b) { return a.first < b.first; });
     Remains remains;
@@ -236,6 +236,11 @@ std::array<Mesh, 2> compared_surfaces(const Mesh& mesh, const Remains& remains) 
     for (const auto& [vertex, position] : remains.moved)
         after.positions[vertex] = position;
     after.triangles = remains.triangles;
+    // Samples are measured from the first corner.
+    for (Mesh* surface : {&before, &after}) {
+        for (std::uint32_t t = 0; t < surface->triangles.size(); ++t)
+            surface->triangles[t] = triangle_from(first_corner(*surface, t), surface->triangles);
+    }
     return {std::move(before), std::move(after)};
 }
 

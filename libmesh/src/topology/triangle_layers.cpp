@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <tuple>
+#include <utility>
 
 #include "geometry/direction.h"
 #include "geometry/triangle_stacks.h"
@@ -171,17 +172,22 @@ TriangleLayers separate_layers(
             std::sort(wedges.begin(), wedges.end());
             return wedges;
         };
-        // The tangents of a triangle depend on its first corner. Therefore the repeated triangle
-        // with the first corner in front stays.
+        // The tangents of a triangle depend on its first corner. Therefore, of the repeated
+        // triangles of the first smoothing group, the one with the first corner in front stays.
+        const auto preference = [&](const Member& member) {
+            const Corner first = order[member.place];
+            return std::pair(
+                mesh.smoothing_groups.empty() ? 0U : mesh.smoothing_groups[triangle_of(first)],
+                first % 3);
+        };
         for (std::size_t begin = 0, end = 0; begin < stack.size(); begin = end) {
             while (end < stack.size() && key_of(stack[end]) == key_of(stack[begin]) &&
                    wedges_of(stack[end]) == wedges_of(stack[begin]))
                 ++end;
-            std::stable_sort(stack.begin() + static_cast<std::ptrdiff_t>(begin),
-                             stack.begin() + static_cast<std::ptrdiff_t>(end),
-                             [&](const Member& a, const Member& b) {
-                                 return order[a.place] % 3 < order[b.place] % 3;
-                             });
+            std::stable_sort(
+                stack.begin() + static_cast<std::ptrdiff_t>(begin),
+                stack.begin() + static_cast<std::ptrdiff_t>(end),
+                [&](const Member& a, const Member& b) { return preference(a) < preference(b); });
         }
         const std::uint32_t front = triangle_of(order[stack[0].place]);
         TriangleLayers here;
