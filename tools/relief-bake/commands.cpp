@@ -123,8 +123,8 @@ bool is_texture(const std::filesystem::path& file) {
 Tool relief_bake() {
     return {"relief-bake",
             "Makes normal maps and textures.",
-            {add_bump_command, add_mesh_command, add_convert_command, add_map_check_command,
-             add_heights_command, add_pack_command, add_textures_command}};
+            {add_bump_command, add_mesh_command, add_merge_command, add_convert_command,
+             add_map_check_command, add_heights_command, add_pack_command, add_textures_command}};
 }
 
 void add_map_files(CLI::App& app, MapFiles& files, const std::string& input,

@@ -26,6 +26,7 @@ Tool relief_bake();
 
 Command add_bump_command(CLI::App& tool);
 Command add_mesh_command(CLI::App& tool);
+Command add_merge_command(CLI::App& tool);
 Command add_convert_command(CLI::App& tool);
 Command add_map_check_command(CLI::App& tool);
 Command add_heights_command(CLI::App& tool);

@@ -79,16 +79,16 @@ void add_result(BakeResult& all, const BakeResult& more) {
 /// finished.
 class PendingMap {
   public:
-    PendingMap(const MeshBakeRequest& request, const Baker& baker, MapPlan plan,
-               const BakeOptions& options, MapProgress& progress, const NormalMapFormat& format)
+    PendingMap(const MeshBakeRequest& request, const BakeFacts& facts, MapPlan plan,
+               const BakeOptions& options, std::size_t index, const MapSource& source,
+               const NormalMapFormat& format)
         : width_(request.size.x), map_{std::move(plan), {}, {}, {}} {
         BakeMapOptions map = map_options(options, map_.plan);
-        map.progress = progress.next_map(request.size.y);
         map.measures_missed = true;
-        map_.layers = planned_layers(request, map_.plan, baker, map.layers);
-        writer_.emplace(request, map_.plan, format, map_.layers, report_);
-        map_.result = baker.bake(
-            map, [&](const BakedRows& rows) { writer_->write(rows); }, report_);
+        map_.layers = planned_layers(request, map_.plan, facts);
+        writer_.emplace(request, map_.plan, format, map_.layers, of_files_);
+        map_.result = source(
+            index, map, [&](const BakedRows& rows) { writer_->write(rows); }, report_);
         writer_->complete();
     }
     PendingMap(const PendingMap&) = delete;
@@ -99,6 +99,7 @@ class PendingMap {
     /// Adds the files to the FileSet.
     BakedMap finish(Findings& findings) {
         writer_->finish();
+        report_.merge(of_files_);
         findings.add(map_.plan.name(), report_, width_);
         return std::move(map_);
     }
@@ -106,28 +107,10 @@ class PendingMap {
   private:
     int width_;
     Report report_;
+    Report of_files_;  ///< Apart, so that the order of findings does not depend on strips.
     BakedMap map_;
     std::optional<MapWriter> writer_;
 };
-
-void bake_all(const MeshBakeRequest& request, const Baker& baker, const BakeModels& models,
-              MapPlans plans, const BakeOptions& options, Stages& stages, MeshBake& bake) {
-    MapProgress progress(stages, plans.maps.size());
-    std::vector<std::unique_ptr<PendingMap>> pending;
-    std::size_t covered = 0;  // Texels of all maps.
-    for (MapPlan& plan : plans.maps) {
-        pending.push_back(std::make_unique<PendingMap>(request, baker, std::move(plan), options,
-                                                       progress, bake.format));
-        const BakedMap& map = pending.back()->map();
-        check_missed(request, models, map.plan.name(), map.result);
-        covered += map.result.texels_baked + map.result.texels_missed;
-    }
-    if (covered == 0) throw uncovered_error(request, models.low);
-    for (const std::unique_ptr<PendingMap>& map : pending) {
-        bake.maps.push_back(map->finish(bake.findings));
-        add_result(bake.all, bake.maps.back().result);
-    }
-}
 
 void verify_all(const MeshBakeRequest& request, const Baker& baker, const BakeModels& models,
                 const BakeOptions& options, MeshBake& bake) {
@@ -144,7 +127,8 @@ void verify_all(const MeshBakeRequest& request, const Baker& baker, const BakeMo
     }
 }
 
-/// Checks that no planned map is the report, the preview or one of the other files.
+}  // namespace
+
 void check_outputs(const MeshBakeRequest& request, const std::vector<MapPlan>& plans,
                    const std::vector<std::filesystem::path>& files) {
     std::vector<std::filesystem::path> outputs;
@@ -167,6 +151,8 @@ void check_outputs(const MeshBakeRequest& request, const std::vector<MapPlan>& p
     outputs.insert(outputs.end(), files.begin(), files.end());
     check(request.preview, outputs);
 }
+
+namespace {
 
 void draw_preview(MeshPreview& preview, const MeshBakeRequest& request, const MeshBake& bake,
                   BakeModels models) {
@@ -203,8 +189,8 @@ std::vector<MaterialMap> material_maps(const MeshBakeRequest& request, const Map
     return maps;
 }
 
-/// The request to store maps in the model of --write-into, which is made from the low model if it
-/// does not exist.
+}  // namespace
+
 MaterialRequest material_request(const MeshBakeRequest& request, const std::vector<MapPlan>& plans,
                                  const std::optional<BakedAlpha>& alpha) {
     const std::filesystem::path& model = *request.write_into.model;
@@ -225,7 +211,6 @@ MaterialRequest material_request(const MeshBakeRequest& request, const std::vect
     return wanted;
 }
 
-/// Stores the maps in the model of --write-into.
 void write_into(const MaterialRequest& request, Stages& stages, MeshBake& bake) {
     bake.stored = store_maps(request, stages);
     for (const PlacedFinding& placed : bake.stored->findings.all()) {
@@ -234,6 +219,8 @@ void write_into(const MaterialRequest& request, Stages& stages, MeshBake& bake) 
         bake.findings.add(placed.where, report, placed.map_width);
     }
 }
+
+namespace {
 
 /// The mean side of a texel over the area of the map, in the unit of the mesh.
 double mean_texel_size(const Mesh& low, const glm::ivec2& size) {
@@ -252,13 +239,15 @@ double mean_texel_size(const Mesh& low, const glm::ivec2& size) {
     return texels > 0.0 ? std::sqrt(area / texels) : 0.0;
 }
 
-/// The parts of the result that are known from the models.
+}  // namespace
+
 void describe_models(const MeshBakeRequest& request, const BakeModels& models, MeshBake& bake) {
     for (const Mesh& mesh : models.high)
         bake.high_triangles += mesh.triangles.size();
     bake.low_triangles = models.low.triangles.size();
     bake.has_file_tangents = !models.low.tangents.empty();
-    bake.pairs = models.pairs;
+    for (const BakePair& pair : models.pairs)
+        bake.pairs.push_back({pair.name, pair.high_triangles, pair.low.size()});
     bake.unpaired = models.unpaired;
     bake.textures = models.textures.description();
     bake.alpha = models.textures.alpha();
@@ -267,40 +256,76 @@ void describe_models(const MeshBakeRequest& request, const BakeModels& models, M
         bake.texel_size = mean_texel_size(models.low, request.size);
 }
 
-/// The steps after the models are read.
-void bake_models(const MeshBakeRequest& request, const BakeModels& models, Stages& stages,
-                 MeshBake& bake) {
-    MapPlans plans = plan_maps(request, models.low, models.materials);
-    bake.materials = plans.materials;
-    bake.findings.add("", plans.report);
-    check_outputs(request, plans.maps, models.files);
-    std::optional<MaterialRequest> materials;
+PreparedBake prepare_bake(const MeshBakeRequest& request, const BakeModels& models, Stages& stages,
+                          MeshBake& bake, bool estimates_missed) {
+    PreparedBake prepared;
+    prepared.plans = plan_maps(request, models.low, models.materials);
+    const std::vector<MapPlan>& plans = prepared.plans.maps;
+    bake.materials = prepared.plans.materials;
+    bake.findings.add("", prepared.plans.report);
+    check_outputs(request, plans, models.files);
     if (request.write_into.model) {
-        materials = material_request(request, plans.maps, models.textures.alpha());
-        check_materials(*materials);
+        prepared.materials = material_request(request, plans, models.textures.alpha());
+        check_materials(*prepared.materials);
     }
-    BakeOptions options = bake_options_of(request);
-    options.map_count = plans.maps.size();
+    BakeOptions& options = prepared.options;
+    options = bake_options_of(request);
+    options.map_count = plans.size();
     options.output_from_mesh = output_axes(request, models.world_from_low);
     options.map.layers.position_from_mesh[3] = glm::dvec4(models.origin, 1.0);
     options.materials = models.textures.materials();
     options.ids = models.ids;
     options.map.layers.opacity = options.map.layers.colors && models.textures.alpha();
     options.cage = models.cage;
-    std::optional<Baker> baker;
     stages.run("bake", [&] {
         Report report;
-        baker.emplace(make_baker(request, models, options, report));
+        prepared.baker.emplace(make_baker(request, models, options, report));
         bake.findings.add("", report);
-        for (const MapPlan& plan : plans.maps)
-            check_missed_early(request, models, *baker, map_options(options, plan), plan.name());
+        if (!estimates_missed) return;
+        for (const MapPlan& plan : plans) {
+            check_missed_early(request, models, *prepared.baker, map_options(options, plan),
+                               plan.name());
+        }
     });
-    bake.fit = baker->fit();
-    bake.agreement = baker->agreement();
+    const Baker& baker = *prepared.baker;
+    bake.fit = baker.fit();
+    bake.agreement = baker.agreement();
+    prepared.facts = {baker.bounds(options.map.layers), baker.ids(), options.map.layers.opacity,
+                      baker.distances()};
+    return prepared;
+}
+
+void write_maps(const MeshBakeRequest& request, const BakeFacts& facts, std::vector<MapPlan> plans,
+                const BakeOptions& options, const MapSource& source,
+                const std::function<FileError()>& uncovered, MeshBake& bake) {
+    std::vector<std::unique_ptr<PendingMap>> pending;
+    std::size_t covered = 0;  // Texels of all maps.
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+        pending.push_back(std::make_unique<PendingMap>(request, facts, std::move(plans[i]), options,
+                                                       i, source, bake.format));
+        const BakedMap& map = pending.back()->map();
+        check_missed(request, bake.fit, bake.origin, map.plan.name(), map.result);
+        covered += map.result.texels_baked + map.result.texels_missed;
+    }
+    if (covered == 0) throw uncovered();
+    for (const std::unique_ptr<PendingMap>& map : pending) {
+        bake.maps.push_back(map->finish(bake.findings));
+        add_result(bake.all, bake.maps.back().result);
+    }
+}
+
+namespace {
+
+/// The steps after the models are read.
+void bake_models(const MeshBakeRequest& request, const BakeModels& models, Stages& stages,
+                 MeshBake& bake) {
+    PreparedBake prepared = prepare_bake(request, models, stages, bake);
+    const Baker& baker = *prepared.baker;
+    BakeOptions& options = prepared.options;
     MeshBakeRequest settled = request;  // With the selected samples.
     if (request.measures_errors()) {
         stages.run("choose", [&] {
-            bake.accuracy = measure_errors(*baker, map_options(options, plans.maps.front()),
+            bake.accuracy = measure_errors(baker, map_options(options, prepared.plans.maps.front()),
                                            settled, bake.format);
         });
         const BakeOptions selected = bake_options_of(settled);
@@ -308,12 +333,22 @@ void bake_models(const MeshBakeRequest& request, const BakeModels& models, Stage
         options.map.sample_angle = selected.map.sample_angle;
     }
     relief::detail::FileSet outputs;
-    stages.run("bake",
-               [&] { bake_all(settled, *baker, models, std::move(plans), options, stages, bake); });
-    if (materials) write_into(*materials, stages, bake);
+    stages.run("bake", [&] {
+        MapProgress progress(stages, prepared.plans.maps.size());
+        const MapSource source = [&](std::size_t, const BakeMapOptions& map, const auto& take,
+                                     Report& report) {
+            BakeMapOptions shown = map;
+            shown.progress = progress.next_map(map.height);
+            return baker.bake(shown, take, report);
+        };
+        write_maps(
+            settled, prepared.facts, std::move(prepared.plans.maps), options, source,
+            [&] { return uncovered_error(request, models.low); }, bake);
+    });
+    if (prepared.materials) write_into(*prepared.materials, stages, bake);
     outputs.commit();
     if (request.verify)
-        stages.run("verify", [&] { verify_all(settled, *baker, models, options, bake); });
+        stages.run("verify", [&] { verify_all(settled, baker, models, options, bake); });
 }
 
 }  // namespace
@@ -397,7 +432,7 @@ std::vector<std::string> read_lines(const MeshBakeRequest& request, const MeshBa
         fmt::format("{}: {}", request.low.string(), counted(bake.low_triangles, "triangle"))};
     if (!bake.pairs.empty()) {
         std::vector<std::string> names;
-        for (const BakePair& pair : bake.pairs)
+        for (const PairCount& pair : bake.pairs)
             names.push_back(pair.name);
         const std::string count = counted(names.size(), "part");
         lines.push_back(fmt::format("{} matched by name: {}", count, join_names(std::move(names))));
@@ -699,10 +734,10 @@ Summary summary_of(const MeshBakeRequest& request, const MeshBake& bake, const S
     const NormalMapFormat& format = bake.format;
     const double rate = megarays_per_second(bake, stages);
     const auto file_name = [](const std::filesystem::path& file) { return file.string(); };
-    const auto pair_json = [](const BakePair& pair) -> Json {
+    const auto pair_json = [](const PairCount& pair) -> Json {
         return {{"name", pair.name},
                 {"high_triangles", pair.high_triangles},
-                {"low_triangles", pair.low.size()}};
+                {"low_triangles", pair.low_triangles}};
     };
     Summary summary;
     summary.add_tool("relief-bake mesh");

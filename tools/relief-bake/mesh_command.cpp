@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command `relief-bake mesh` and its options. Contradictory and useless options are refused
 // before any file is read. Tests: tests/tools/relief_bake_mesh_test.cpp,
-// relief_bake_layers_test.cpp.
+// relief_bake_layers_test.cpp, relief_bake_shards_test.cpp.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <map>
 #include <memory>
 
@@ -12,6 +14,7 @@
 #include "common/model_file.h"
 #include "common/summary.h"
 #include "mesh_bake.h"
+#include "mesh_shards.h"
 #include "relief/mesh/execution.h"
 
 namespace relief::tools {
@@ -334,25 +337,10 @@ struct MeshOptions {
     std::vector<std::filesystem::path> files;
     std::optional<std::string> output;  ///< -o as typed, because a final '/' is significant.
     MeshBakeRequest request;
+    std::optional<ShardChoice> shard;
+    std::optional<std::filesystem::path> part;
     GeneralOptions general;
 };
-
-/// The findings for which --strict exits with 3: all except intended ones and those that an option
-/// limits.
-Findings strict_findings(const MeshBakeRequest& request, const Findings& findings) {
-    Findings strict;
-    for (const PlacedFinding& placed : findings.all()) {
-        const std::string& kind = placed.finding.kind;
-        const bool is_intended = kind == "texel of mirrored triangles";
-        const bool is_limited = (kind == "texel missed by its rays" && request.max_missed) ||
-                                (kind == "normal behind the surface" && request.bound.degrees);
-        if (is_intended || is_limited) continue;
-        Report report;
-        report.add(placed.finding);
-        strict.add(placed.where, report);
-    }
-    return strict;
-}
 
 // Several bakes: models are paired by the names of their files.
 
@@ -467,13 +455,81 @@ ExitCode bake_pairs(const CLI::App& app, const MeshOptions& options) {
     return run_batch(app, batch, options.request.report, options.general);
 }
 
-ExitCode run(const CLI::App& app, MeshOptions& options) {
+/// Checks the whole command line of a single bake.
+void check_single(const CLI::App& app, MeshOptions& options) {
     MeshBakeRequest& request = options.request;
     apply_engine(request.map);
-    if (options.output) return bake_pairs(app, options);
     check_request(request, options.files);
     check(app, request.write_into);
     check_files(request, options.files);
+}
+
+/// The options of a command line, but for those of the process and of shards.
+std::vector<std::string> given_options(const CLI::App& app) {
+    constexpr std::array<std::string_view, 7> left_out = {
+        "--shard", "--part", "--threads", "--quiet", "--max-memory", "--max-pixels", "--output"};
+    std::vector<std::string> words;
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string name = option->get_name();
+        if (option->count() == 0 || !name.starts_with("--") ||
+            std::ranges::find(left_out, name) != left_out.end())
+            continue;
+        if (option->get_expected_max() == 0) {
+            words.push_back(name);
+            continue;
+        }
+        for (const std::string& value : option->results())
+            words.push_back(name + "=" + value);
+    }
+    return words;
+}
+
+ExitCode run_shard(const CLI::App& app, MeshOptions& options) {
+    if (options.output) {
+        throw UsageError("-o, --shard: contradict each other", "bake the pairs one after another");
+    }
+    check_sharded(options.request);
+    check_single(app, options);
+    std::vector<std::filesystem::path> files = options.files;
+    if (options.part) {
+        check_distinct("--part", *options.part, files);
+        require_folder_of(*options.part);
+    }
+    set_thread_limit(options.general.threads);
+    Stages stages(options.general.quiet);
+    const BakedShard shard = bake_shard(options.request, {given_options(app), options.files},
+                                        *options.shard, options.part, stages);
+    if (options.general.quiet) return ExitCode::done;
+    Summary summary;
+    BakeCounts counts;
+    std::vector<std::string> rows;
+    for (const PartRows& one : shard.part.rows) {
+        const std::string map = shard.part.plans[one.map].name();
+        rows.push_back(fmt::format("{}{}rows {} to {}", map, map.empty() ? "" : ": ",
+                                   one.found.rows.first, one.found.rows.last));
+        counts += one.found.counts;
+    }
+    if (rows.empty()) rows.emplace_back("no rows: there are more shards than groups of 4 rows");
+    summary.add("shard", fmt::format("{} of {}, job {}", shard.part.shard, shard.part.job.count,
+                                     shard.part.job.hash()));
+    summary.add("rows", rows);
+    summary.add("texels", fmt::format("{} baked, {} missed, {} rays", counts.baked, counts.missed,
+                                      counts.rays));
+    summary.add_times(stages);
+    summary.add("wrote", file_and_size(shard.file));
+    summary.print();
+    return ExitCode::done;
+}
+
+ExitCode run(const CLI::App& app, MeshOptions& options) {
+    if (options.shard) return run_shard(app, options);
+    if (options.part) throw UsageError("--part: has no effect without --shard");
+    MeshBakeRequest& request = options.request;
+    if (options.output) {
+        apply_engine(request.map);
+        return bake_pairs(app, options);
+    }
+    check_single(app, options);
     set_thread_limit(options.general.threads);
     Stages stages(options.general.quiet);
     const MeshBake bake = bake_maps(request, stages);
@@ -654,13 +710,29 @@ BakeOptions bake_options_of(const MeshBakeRequest& request) {
     return options;
 }
 
-Command add_mesh_command(CLI::App& tool) {
-    CLI::App& app = add_subcommand(
-        tool, "mesh", "Bakes the normals of detailed models into a map for a simple one.");
-    const auto options = std::make_shared<MeshOptions>();
-    MeshBakeRequest& request = options->request;
+/// The findings for which --strict exits with 3: all except intended ones and those that an option
+/// limits.
+Findings strict_findings(const MeshBakeRequest& request, const Findings& findings) {
+    Findings strict;
+    for (const PlacedFinding& placed : findings.all()) {
+        const std::string& kind = placed.finding.kind;
+        const bool is_intended = kind == "texel of mirrored triangles";
+        const bool is_limited = (kind == "texel missed by its rays" && request.max_missed) ||
+                                (kind == "normal behind the surface" && request.bound.degrees);
+        if (is_intended || is_limited) continue;
+        Report report;
+        report.add(placed.finding);
+        strict.add(placed.where, report);
+    }
+    return strict;
+}
+
+namespace {
+
+void add_mesh_options(CLI::App& app, MeshOptions& options) {
+    MeshBakeRequest& request = options.request;
     add_files(
-        app, "FILE...", options->files,
+        app, "FILE...", options.files,
         "HIGH... LOW OUT: one or more detailed models (.glb .gltf .obj .ply .stl .off), the "
         "simple model with texture coordinates, and the map to write (.png .tif .exr .ktx2 .dds). "
         "<material> in the name of OUT writes a map for each material of LOW; <UDIM> writes "
@@ -670,7 +742,7 @@ Command add_mesh_command(CLI::App& tool) {
         "Bake several pairs of models, each X_low from all X_high. PATH is a folder for the "
         "maps X.png, or a name with <model>, which stands for X in the names of all files. If "
         "a pair fails, the others are still baked.",
-        [&output = options->output](const std::string&, const std::string& text) { output = text; })
+        [&output = options.output](const std::string&, const std::string& text) { output = text; })
         .group("Several bakes");
     add_ray_options(app, request);
     add_fit_options(app, request,
@@ -697,12 +769,45 @@ Command add_mesh_command(CLI::App& tool) {
         "Exit with 3 if there is a finding. The map is written in any case. Accepted findings: "
         "texels of mirrored triangles; missed texels, with --max-missed; normals behind the "
         "surface, with --max-error.");
-    add_general_options(app, options->general);
+    add_general_options(app, options.general);
+    add_shard_option(
+        app, options.shard,
+        "Bake only part K of N, with about the same number of covered texels in each, and write it "
+        "as a file for relief-bake merge. The shards may run on different machines, in any order, "
+        "and be repeated; the map is the same, byte for byte.");
+    add_path(app, "--part", options.part,
+             "The file of the shard. Default: OUT.JOB-K-of-N.part, where JOB is a hash of inputs "
+             "and options.")
+        .group("Several machines");
+}
+
+}  // namespace
+
+MeshBakeRequest parse_mesh_request(const MeshArguments& arguments) {
+    CLI::App app;
+    MeshOptions options;
+    add_mesh_options(app, options);
+    try {
+        app.parse(std::vector<std::string>(arguments.options.rbegin(), arguments.options.rend()));
+    } catch (const CLI::Error& error) {
+        throw UsageError(error.what());
+    }
+    options.files = arguments.files;
+    check_single(app, options);
+    return std::move(options.request);
+}
+
+Command add_mesh_command(CLI::App& tool) {
+    CLI::App& app = add_subcommand(
+        tool, "mesh", "Bakes the normals of detailed models into a map for a simple one.");
+    const auto options = std::make_shared<MeshOptions>();
+    add_mesh_options(app, *options);
     set_common_options(
         app, {"--cage",          "--offset",  "--max-distance", "--match",      "--size",
               "--space",         "--samples", "--padding",      "--height-map", "--occlusion-map",
               "--curvature-map", "--green",   "--bits",         "--preview",    "--report",
-              "--strict",        "--verify",  "--max-error",    "--threads",    "--write-into"});
+              "--strict",        "--verify",  "--max-error",    "--threads",    "--write-into",
+              "--shard"});
     set_examples(
         app,
         {"relief-mesh subdivide data/vase.obj out/high.obj --levels 2",

@@ -425,21 +425,20 @@ std::vector<Sample> append_alpha(std::span<const Sample> codes, std::span<const 
 }  // namespace
 
 std::vector<WrittenLayer> planned_layers(const MeshBakeRequest& request, const MapPlan& plan,
-                                         const Baker& baker, const BakeLayers& layers) {
+                                         const BakeFacts& facts) {
     std::vector<WrittenLayer> planned;
     if (request.layers.files.empty()) return planned;
-    const LayerBounds bounds = baker.bounds(layers);
     const NormalMapFormat format = format_of(request.map, request.output);
     for (const auto& [kind, file] : request.layers.files) {
-        const double range = layer_range(kind, request.layers, bounds);
+        const double range = layer_range(kind, request.layers, facts.bounds);
         // If all values are 0, any range stores them.
         const bool is_usable = range > 0.0 && std::isfinite(range);
         LayerCoding coding{kind, bits_of(request.layers, kind), is_usable ? range : 1.0};
         coding.normal_format = {.green = format.green, .flat = format.flat};
         coding.space = request.bake.space;
-        if (kind == LayerKind::id) coding.ids = baker.ids();
+        if (kind == LayerKind::id) coding.ids = facts.ids;
         planned.push_back(
-            {plan.named(file), std::move(coding), kind == LayerKind::color && layers.opacity});
+            {plan.named(file), std::move(coding), kind == LayerKind::color && facts.has_opacity});
     }
     return planned;
 }

@@ -97,10 +97,18 @@ struct WrittenLayer {
     bool has_opacity = false;  ///< In alpha; only with colors.
 };
 
+/// What the models tell about the layers of all maps.
+struct BakeFacts {
+    LayerBounds bounds;
+    std::vector<SurfaceId> ids;
+    bool has_opacity = false;
+    BakeDistances distances;
+};
+
 /// The layers of a map. Ranges are those of the options, else the largest values that the bake can
 /// give; for curvature in 8 bits, the value that 99% of the area does not exceed.
 std::vector<WrittenLayer> planned_layers(const MeshBakeRequest& request, const MapPlan& plan,
-                                         const Baker& baker, const BakeLayers& layers);
+                                         const BakeFacts& facts);
 
 /// "#a0b1c2 stone, #102030 wood, and 12 more (see --report)"
 std::string id_text(const std::vector<SurfaceId>& ids);

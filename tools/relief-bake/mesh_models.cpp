@@ -568,7 +568,8 @@ std::vector<std::string> ray_lines(const MeshBakeRequest& request, const BakeRes
 }
 
 /// \param measured  the place of an estimate: " of a map of 256 x 256"; empty: the map itself
-FileError missed_error(const MeshBakeRequest& request, const BakeModels& models,
+/// \param boxes     describe_boxes()
+FileError missed_error(const MeshBakeRequest& request, const std::string& boxes,
                        const std::string& map, const BakeResult& result,
                        const std::string& measured) {
     const std::size_t all = result.texels_missed + result.texels_baked;
@@ -582,8 +583,7 @@ FileError missed_error(const MeshBakeRequest& request, const BakeModels& models,
                   result.texels_missed, all, measured,
                   missed_percent(result.texels_missed, result.texels_baked),
                   request.missed_limit());
-    std::string problem = fmt::format("{}{}{}; {}", map, map.empty() ? "" : ": ", share,
-                                      describe_fit(request, models));
+    std::string problem = fmt::format("{}{}{}; {}", map, map.empty() ? "" : ": ", share, boxes);
     for (const std::string& line : ray_lines(request, result))
         problem += "; " + line;
     return failure(request.low, problem,
@@ -623,10 +623,10 @@ std::string describe_fit(const MeshBakeRequest& request, const BakeModels& model
     return describe_boxes(request, compare_boxes(models.high, models.low), models.origin);
 }
 
-void check_missed(const MeshBakeRequest& request, const BakeModels& models, const std::string& map,
-                  const BakeResult& result) {
+void check_missed(const MeshBakeRequest& request, const BakeFit& fit, const glm::dvec3& origin,
+                  const std::string& map, const BakeResult& result) {
     if (misses_too_much(result, request.missed_limit()))
-        throw missed_error(request, models, map, result, "");
+        throw missed_error(request, describe_boxes(request, fit, origin), map, result, "");
 }
 
 FileError uncovered_error(const MeshBakeRequest& request, const Mesh& low) {
@@ -665,7 +665,7 @@ void check_missed_early(const MeshBakeRequest& request, const BakeModels& models
     if (!request.measures_errors() && texels <= 2.0 * estimate_texels) return;
     const MissedEstimate estimate = estimate_missed(baker, map);
     if (!misses_too_much(estimate.result, limit)) return;
-    throw missed_error(request, models, name, estimate.result,
+    throw missed_error(request, describe_fit(request, models), name, estimate.result,
                        fmt::format(" of a map of {} x {}", estimate.width, estimate.height));
 }
 

@@ -142,10 +142,11 @@ Baker make_baker(const MeshBakeRequest& request, const BakeModels& models,
 /// Describes the boxes of the models and the likely cause of a misfit.
 std::string describe_fit(const MeshBakeRequest& request, const BakeModels& models);
 
-/// \param map  its name if there are several maps, else empty
+/// \param fit     of the models, in coordinates relative to `origin`
+/// \param map     its name if there are several maps, else empty
 /// \throws FileError if no ray hits, or too many texels are missed
-void check_missed(const MeshBakeRequest& request, const BakeModels& models, const std::string& map,
-                  const BakeResult& result);
+void check_missed(const MeshBakeRequest& request, const BakeFit& fit, const glm::dvec3& origin,
+                  const std::string& map, const BakeResult& result);
 
 /// The error if the low model covers no texel of any map.
 FileError uncovered_error(const MeshBakeRequest& request, const Mesh& low);

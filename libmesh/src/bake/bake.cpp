@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -15,8 +14,8 @@
 #include <set>
 
 #include "bake/bake_work.h"
-#include "bake/edge_padding.h"
 #include "bake/layers.h"
+#include "bake/map_rows.h"
 #include "geometry/direction.h"
 #include "parallel.h"
 #include "progress_stage.h"
@@ -242,12 +241,6 @@ std::vector<std::uint32_t> parts_of_triangles(std::span<const BakePart> parts, c
     return result;
 }
 
-/// The memory of a strip, unless the minimum number of rows needs more.
-constexpr std::size_t strip_bytes = 60'000'000;
-constexpr int strip_row_step = 64;  // The rows of a dither tile and of a coverage band.
-
-constexpr int max_padding = 1024;
-
 int samples_across(int samples) {
     for (const int side : {1, 2, 4, 8, 16, 32}) {
         if (side * side == samples) return side;
@@ -291,13 +284,14 @@ void check_rows(const BakeRowRange& rows, const BakeMapOptions& map) {
         throw InvalidInput("padding needs all rows of a map, but only some are baked");
 }
 
-void check_border(const BakeMapOptions& map) {
-    if (!map.border_folder) return;
-    if (map.padding > 0 || map.rows)
-        throw InvalidInput("filling a map to its border needs all rows and a padding of 0");
-    if (std::max(map.width, map.height) > BorderFill::max_side) {
-        throw InvalidInput(fmt::format("a map of {} x {} texels is too large to be filled: {}",
-                                       map.width, map.height, BorderFill::max_side));
+void check_shard_rows(const BakeRowRange& rows, const BakeMapOptions& map) {
+    constexpr int step = 4;  // Blocks of samples of other rows are then the same.
+    if (map.rows) throw InvalidInput("a shard has its own rows, but the map has some, too");
+    if (rows.first < 0 || rows.first % step != 0 || rows.last <= rows.first ||
+        rows.last > map.height || (rows.last % step != 0 && rows.last != map.height)) {
+        throw InvalidInput(
+            fmt::format("rows {} to {} must be multiples of {} within a map of {} rows", rows.first,
+                        rows.last, step, map.height));
     }
 }
 
@@ -312,11 +306,7 @@ void check_map(const BakeMapOptions& map, const Mesh& low) {
                 map.width, map.height, map.samples, TexelRasterizer::largest_side / side));
         }
     }
-    if (map.padding < 0 || map.padding > max_padding) {
-        throw InvalidInput(fmt::format("the padding is {} texels, but must be within [0, {}]",
-                                       map.padding, max_padding));
-    }
-    check_border(map);
+    check_padding(map);
     if (map.sample_angle && !(*map.sample_angle >= 0.0 && *map.sample_angle <= std::numbers::pi))
         throw InvalidInput(
             fmt::format("the angle is {}, but must be within [0, pi]", *map.sample_angle));
@@ -344,72 +334,80 @@ CoverageOptions coverage_options(const BakeMapOptions& map, int side) {
     return coverage;
 }
 
-/// The requested layers of a strip of the map.
-struct Strip {
-    std::array<std::vector<float>, baked_layers.size()> layers;
-    std::vector<TexelState> states;
+/// Bakes the rows of a shard, strip by strip.
+class ShardBake {
+  public:
+    /// \param work  must outlive this object
+    ShardBake(const BakeWork& work, const Mesh& low, const BakeRowRange& rows)
+        : work_(work),
+          side_(work.side),
+          shard_{.rows = rows},
+          cover_(low.texcoords, low.triangles, coverage_options(work.map, work.side),
+                 rows.first == 0 ? shard_.triangles : ignored_),
+          stage_("baking", static_cast<std::size_t>(rows.last - rows.first)) {}
 
-    Strip(const BakeLayers& requested, std::size_t width, std::size_t rows) : states(width * rows) {
-        for (std::size_t i = 0; i < layers.size(); ++i) {
-            if (baked_layers[i].is_requested(requested))
-                layers[i].resize(baked_layers[i].channels * width * rows);
+    /// Bakes rows [first, last) into a strip.
+    void bake(Strip& strip, int first, int last) {
+        constexpr int band = TexelRasterizer::band_rows;
+        const int begin = first * side_;
+        const int end = last * side_;
+        const int map_end = work_.map.height * side_;
+        const int first_whole = (begin + band - 1) / band * band;
+        // A band counts where its first row is.
+        Report ignored;
+        if (begin < first_whole) {
+            cover(strip, first, last, first_whole - band, std::min(first_whole, map_end), ignored);
         }
+        if (first_whole < end) {
+            const int last_whole = std::min((end + band - 1) / band * band, map_end);
+            shard_.coverage += cover(strip, first, last, first_whole, last_whole, shard_.texels);
+        }
+        for (const auto& [row, report] : reports_)
+            shard_.rays.merge(report);
+        reports_.clear();
     }
 
-    /// Returns a view of `count` rows from row `begin` of the strip.
-    BakedRows rows(int width, int first_row, int begin, int count) {
-        const auto first = static_cast<std::size_t>(begin) * static_cast<std::size_t>(width);
-        const auto texels = static_cast<std::size_t>(count) * static_cast<std::size_t>(width);
-        BakedRows result;
-        result.first_row = first_row;
-        result.row_count = count;
-        result.states = std::span(states).subspan(first, texels);
-        for (std::size_t i = 0; i < layers.size(); ++i) {
-            const std::size_t channels = baked_layers[i].channels;
-            if (layers[i].empty()) continue;
-            result.*baked_layers[i].values =
-                std::span(layers[i]).subspan(channels * first, channels * texels);
-        }
-        return result;
+    BakeShard finish() { return std::move(shard_); }
+
+  private:
+    /// Covers bands of sample rows, and bakes those of their rows that are in the strip.
+    Coverage cover(Strip& strip, int first, int last, int begin, int end, Report& report) {
+        const auto row_samples =
+            static_cast<std::size_t>(work_.map.width) * static_cast<std::size_t>(side_ * side_);
+        const auto take = [&](int first_sample_row, std::span<const CoveredTexel> owners) {
+            const int band_first = first_sample_row / side_;
+            const int band_last = band_first + static_cast<int>(owners.size() / row_samples);
+            const int from = std::max(band_first, first);
+            const int to = std::min(band_last, last);
+            if (from >= to) return;
+            bake_band(strip.rows(work_.map.width, from, from - first, to - from), from,
+                      owners.subspan(static_cast<std::size_t>(from - band_first) * row_samples,
+                                     static_cast<std::size_t>(to - from) * row_samples));
+        };
+        return cover_.cover(begin, end, take, report);
     }
+
+    void bake_band(const BakedRows& rows, int row, std::span<const CoveredTexel> owners) {
+        Report report;
+        const BakeCounts more = bake_rows(work_, row, owners, rows, report);
+        const std::lock_guard lock(mutex_);
+        shard_.counts += more;
+        rows_done_ += rows.row_count;
+        if (work_.map.progress) work_.map.progress({rows_done_, shard_.counts.rays});
+        stage_.advance(static_cast<std::size_t>(rows.row_count));
+        reports_.emplace(row, std::move(report));
+    }
+
+    const BakeWork& work_;
+    int side_;
+    Report ignored_;
+    BakeShard shard_;
+    TexelRasterizer cover_;
+    ProgressStage stage_;
+    std::mutex mutex_;
+    std::map<int, Report> reports_;  ///< By row, so that the order does not depend on threads.
+    int rows_done_ = 0;
 };
-
-int rows_per_strip(const BakeLayers& requested, int width, int height) {
-    std::size_t texel_bytes = sizeof(TexelState);
-    for (const BakedLayer& layer : baked_layers) {
-        if (layer.is_requested(requested)) texel_bytes += sizeof(float) * layer.channels;
-    }
-    const auto max_rows =
-        static_cast<int>(strip_bytes / texel_bytes / static_cast<std::size_t>(width));
-    const int rows = std::max(max_rows / strip_row_step, 1) * strip_row_step;
-    return std::min(rows, height);
-}
-
-/// Bakes rows [first, last) of the map into a strip.
-void bake_strip(const BakeWork& work, const TexelRasterizer& cover, Strip& strip, int first,
-                int last, BakeResult& result, BakeCounts& counts, int& rows_done,
-                ProgressStage& stage, Report& report) {
-    const int side = work.side;
-    std::mutex mutex;
-    std::map<int, Report> reports;  // By row, so that the order does not depend on threads.
-    const auto take = [&](int first_sample_row, std::span<const CoveredTexel> owners) {
-        const int row = first_sample_row / side;
-        const int count = static_cast<int>(owners.size() / static_cast<std::size_t>(side * side) /
-                                           static_cast<std::size_t>(work.map.width));
-        Report row_report;
-        const BakeCounts more = bake_rows(
-            work, row, owners, strip.rows(work.map.width, row, row - first, count), row_report);
-        const std::lock_guard lock(mutex);
-        counts += more;
-        rows_done += count;
-        if (work.map.progress) work.map.progress({rows_done, counts.rays});
-        stage.advance(static_cast<std::size_t>(count));
-        reports.emplace(row, std::move(row_report));
-    };
-    result.coverage += cover.cover(first * side, last * side, take, report);
-    for (const auto& [row, row_report] : reports)
-        report.merge(row_report);
-}
 
 }  // namespace
 
@@ -570,55 +568,42 @@ LayerBounds Baker::bounds(const BakeLayers& layers) const {
     return bounds;
 }
 
+BakeShard Baker::bake_range(const BakeMapOptions& map, const BakeRowRange& rows,
+                            const std::function<void(const BakedRows& rows)>& take) const {
+    check_layers(map.layers, implementation_->options.map.layers);
+    const BakeWork work{implementation_->parts, implementation_->low, implementation_->options, map,
+                        samples_across(map.samples)};
+    ShardBake bake(work, low(), rows);
+    const int strip_rows = Strip::row_count(map.layers, map.width, rows.last - rows.first);
+    Strip strip(map.layers, static_cast<std::size_t>(map.width),
+                static_cast<std::size_t>(strip_rows));
+    for (int first = rows.first; first < rows.last; first += strip_rows) {
+        const int last = std::min(first + strip_rows, rows.last);
+        bake.bake(strip, first, last);
+        take(strip.rows(map.width, first, 0, last - first));
+    }
+    return bake.finish();
+}
+
+BakeShard Baker::bake_shard(const BakeMapOptions& map, const BakeRowRange& rows,
+                            const std::function<void(const BakedRows& rows)>& take,
+                            const ExecutionOptions& execution) const {
+    const ExecutionScope scope(execution);
+    check_map(map, low());
+    check_shard_rows(rows, map);
+    return bake_range(map, rows, take);
+}
+
 BakeResult Baker::bake(const BakeMapOptions& map,
                        const std::function<void(const BakedRows& rows)>& take, Report& report,
                        const ExecutionOptions& execution) const {
     const ExecutionScope scope(execution);
     check_map(map, low());
-    check_layers(map.layers, implementation_->options.map.layers);
-    const int side = samples_across(map.samples);
-    const BakeRowRange range = map.rows.value_or(BakeRowRange{0, map.height});
-    Report ignored;
-    const TexelRasterizer cover(low().texcoords, low().triangles, coverage_options(map, side),
-                                range.first == 0 ? report : ignored);
-    BakeResult result;
-    result.distances = distances();
-    const BakeWork work{implementation_->parts, implementation_->low, implementation_->options, map,
-                        side};
-    const int rows = rows_per_strip(map.layers, map.width, range.last - range.first);
-    Strip strip(map.layers, static_cast<std::size_t>(map.width), static_cast<std::size_t>(rows));
-    std::optional<BorderFill> border;
-    if (map.border_folder) border.emplace(map.width, map.height, *map.border_folder, take);
-    Dilation dilation(map.width, map.height, map.padding,
-                      [&](const BakedRows& done) { border ? border->push(done) : take(done); });
-    BakeCounts counts;
-    int rows_done = 0;
-    ProgressStage stage("baking", static_cast<std::size_t>(range.last - range.first));
-    for (int first = range.first; first < range.last; first += rows) {
-        const int last = std::min(first + rows, range.last);
-        bake_strip(work, cover, strip, first, last, result, counts, rows_done, stage, report);
-        dilation.push(strip.rows(map.width, first, 0, last - first));
-    }
-    result.samples = counts.samples;
-    result.rays = counts.rays;
-    result.occlusion_rays = counts.occlusion_rays;
-    result.thickness_rays = counts.thickness_rays;
-    result.open_thickness_rays = counts.open_thickness_rays;
-    result.texels_baked = counts.baked;
-    result.texels_missed = counts.missed;
-    result.first_missed = counts.first_missed;
-    result.missed_from_behind = counts.missed_from_behind;
-    result.clipped_outside = counts.clipped_outside.summary();
-    result.clipped_inside = counts.clipped_inside.summary();
-    result.measuring_rays = counts.measuring_rays;
-    const bool is_whole = range.first == 0 && range.last == map.height;
-    if (is_whole && counts.baked + counts.missed == 0)
-        report.add("map without a covered texel", "map", 0, "is empty");
-    if (counts.baked > 0) {
-        result.min_height = counts.min_height;
-        result.max_height = counts.max_height;
-    }
-    return result;
+    const BakeRowRange rows = map.rows.value_or(BakeRowRange{0, map.height});
+    PaddedRows padded(map, take);
+    const BakeShard shard =
+        bake_range(map, rows, [&](const BakedRows& done) { padded.push(done); });
+    return completed(shard, distances(), rows.first == 0 && rows.last == map.height, report);
 }
 
 BakeResult bake_normals(std::span<const Mesh> high, const Mesh& low, const BakeOptions& options,

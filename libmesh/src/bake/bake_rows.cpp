@@ -22,15 +22,6 @@ namespace {
 constexpr int block = 4;                      // Samples along the side of a block.
 constexpr std::size_t rays_per_flush = 4096;  // Their data fits a cache.
 constexpr std::size_t max_first_missed = 8;
-constexpr int bins_per_octave = 8;  // Of ray lengths.
-
-/// Keeps the first missed texels, by row and column.
-void keep_first(std::vector<MissedTexel>& missed) {
-    std::sort(missed.begin(), missed.end(), [](const MissedTexel& a, const MissedTexel& b) {
-        return a.y != b.y ? a.y < b.y : a.x < b.x;
-    });
-    if (missed.size() > max_first_missed) missed.resize(max_first_missed);
-}
 
 /// Returns whether adaptive sampling casts a sample in its first pass: one in each row and column
 /// of 16.
@@ -335,61 +326,6 @@ std::optional<glm::dvec3> in_output_space(const BakeWork& work, const CoveredTex
     const TexelFrame frame(work.low.mesh(), texel.triangle, glm::dvec3(texel.weights()));
     if (!frame.is_usable()) return std::nullopt;
     return direction_or_zero(frame.to_tangent(direction));
-}
-
-BakeCounts& BakeCounts::operator+=(const BakeCounts& other) {
-    samples += other.samples;
-    rays += other.rays;
-    occlusion_rays += other.occlusion_rays;
-    thickness_rays += other.thickness_rays;
-    open_thickness_rays += other.open_thickness_rays;
-    baked += other.baked;
-    missed += other.missed;
-    min_height = std::min(min_height, other.min_height);
-    max_height = std::max(max_height, other.max_height);
-    first_missed.insert(first_missed.end(), other.first_missed.begin(), other.first_missed.end());
-    keep_first(first_missed);
-    missed_from_behind += other.missed_from_behind;
-    measuring_rays += other.measuring_rays;
-    clipped_outside += other.clipped_outside;
-    clipped_inside += other.clipped_inside;
-    return *this;
-}
-
-void RayLengths::add(double length) {
-    ++count_;
-    shortest_ = std::min(shortest_, length);
-    longest_ = std::max(longest_, length);
-    int exponent = 0;
-    const double mantissa = std::frexp(length, &exponent);  // 0.5 to 1
-    const int part = static_cast<int>((mantissa - 0.5) * 2.0 * bins_per_octave);
-    ++bins_[bins_per_octave * exponent + part];
-}
-
-RayLengths& RayLengths::operator+=(const RayLengths& other) {
-    count_ += other.count_;
-    shortest_ = std::min(shortest_, other.shortest_);
-    longest_ = std::max(longest_, other.longest_);
-    for (const auto& [bin, count] : other.bins_)
-        bins_[bin] += count;
-    return *this;
-}
-
-ClippedRays RayLengths::summary() const {
-    if (count_ == 0) return {};
-    ClippedRays clipped{count_, shortest_, longest_, longest_};
-    std::size_t so_far = 0;
-    for (const auto& [bin, count] : bins_) {
-        so_far += count;
-        if (2 * so_far < count_) continue;
-        const int exponent =
-            (bin - (bin % bins_per_octave + bins_per_octave) % bins_per_octave) / bins_per_octave;
-        const int part = bin - bins_per_octave * exponent;
-        const double upper = std::ldexp(0.5 + 0.5 * (part + 1) / bins_per_octave, exponent);
-        clipped.half = std::min(upper, longest_);
-        break;
-    }
-    return clipped;
 }
 
 BakeCounts bake_rows(const BakeWork& work, int first_row, std::span<const CoveredTexel> owners,

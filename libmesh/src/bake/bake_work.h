@@ -5,8 +5,6 @@
 /// the rows of a strip. Tests: tests/mesh/bake/baker_test.cpp, bake_test.cpp, padding_test.cpp.
 #pragma once
 
-#include <limits>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +13,7 @@
 #include "bake/high_surface.h"
 #include "bake/ray_scene.h"
 #include "relief/mesh/bake.h"
+#include "relief/mesh/bake_shards.h"
 
 namespace relief::detail {
 
@@ -144,39 +143,6 @@ struct BakeWork {
 /// \param texel  the point of the low mesh
 std::optional<glm::dvec3> in_output_space(const BakeWork& work, const CoveredTexel& texel,
                                           const glm::dvec3& direction);
-
-/// Statistics of ray lengths that would hit: count, minimum, maximum, and a histogram.
-class RayLengths {
-  public:
-    void add(double length);
-    RayLengths& operator+=(const RayLengths& other);
-    [[nodiscard]] ClippedRays summary() const;
-
-  private:
-    std::size_t count_ = 0;
-    double shortest_ = std::numeric_limits<double>::infinity();
-    double longest_ = 0.0;
-    std::map<int, std::size_t> bins_;  ///< Eight equal bins for each power of two.
-};
-
-/// Counts over some rows; the order of sums has no influence.
-struct BakeCounts {
-    std::size_t samples = 0;
-    std::size_t rays = 0;
-    std::size_t occlusion_rays = 0;
-    std::size_t thickness_rays = 0;
-    std::size_t open_thickness_rays = 0;
-    std::size_t baked = 0;
-    std::size_t missed = 0;
-    double min_height = std::numeric_limits<double>::infinity();
-    double max_height = -std::numeric_limits<double>::infinity();
-    std::vector<MissedTexel> first_missed;
-    std::size_t missed_from_behind = 0;
-    std::size_t measuring_rays = 0;
-    RayLengths clipped_outside, clipped_inside;
-
-    BakeCounts& operator+=(const BakeCounts& other);
-};
 
 /// Bakes rows of texels in parallel, from the owners of their samples to the texel means.
 ///

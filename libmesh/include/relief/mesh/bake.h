@@ -35,6 +35,8 @@
 
 namespace RELIEF_API relief {
 
+struct BakeShard;  // bake_shards.h
+
 // Options of the layers that a bake computes from the same rays: normals, heights, occlusion, bent
 // normals, thickness, curvature, positions, ids, colors, surfaces and emission. A layer that is not
 // requested costs no time and no memory, and layers do not affect each other.
@@ -626,8 +628,20 @@ class Baker {
                     const std::function<void(const BakedRows& rows)>& take,
                     Report& report = IgnoredReport(), const ExecutionOptions& execution = {}) const;
 
+    /// Bakes only some rows of a map, for merge_shards() (bake_shards.h).
+    ///
+    /// \param map   as for bake(). The padding is left to merge_shards(); `rows` must be absent
+    /// \param rows  multiples of 4, or the height of the map
+    /// \param take  receives these rows from the top, without padding
+    /// \throws InvalidInput as bake(); Cancelled
+    [[nodiscard]] BakeShard bake_shard(const BakeMapOptions& map, const BakeRowRange& rows,
+                                       const std::function<void(const BakedRows& rows)>& take,
+                                       const ExecutionOptions& execution = {}) const;
+
   private:
     struct Implementation;
+    BakeShard bake_range(const BakeMapOptions& map, const BakeRowRange& rows,
+                         const std::function<void(const BakedRows& rows)>& take) const;
     std::unique_ptr<Implementation> implementation_;
 };
 
