@@ -74,7 +74,7 @@ TEST(BakeMerge, MakesTheMapsOfMaterialsAndTilesAndStoresThemInAModel) {
               0);
     expect_equal(workplace,
                  "relief-bake mesh high.obj data/vase.obj 'out/<material>-<UDIM>.png' --size 32 "
-                 "--dither ordered --bits 8 --strict",
+                 "--dither ordered --bits 8",
                  5);
     expect_equal(workplace,
                  "relief-bake mesh high.obj data/vase.obj out/map.png --size 32 --write-into "

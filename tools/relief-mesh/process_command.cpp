@@ -19,6 +19,7 @@
 #include "common/file_jobs.h"
 #include "common/model_file.h"
 #include "common/options.h"
+#include "common/shard_choice.h"
 #include "common/summary.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/model.h"
@@ -344,6 +345,7 @@ struct ProcessOptions {
     FileWords words;
     std::optional<ModelFormat> format;  ///< The format of files in an output folder.
     ProcessRequest request;             ///< The files are set for each model.
+    std::optional<ShardChoice> shard;
     ReportOptions report;
     GeneralOptions general;
 };
@@ -434,7 +436,10 @@ ExitCode process_one(const CLI::App& app, const ProcessRequest& request,
 
 ExitCode run(const CLI::App& app, const ProcessOptions& options) {
     const JobList list = model_jobs_of(options.words, options.format);
-    const std::vector<ProcessRequest> requests = requests_of(options, list);
+    if (options.shard && list.is_single())
+        throw UsageError("--shard: divides several models", "give an output folder with -o");
+    std::vector<ProcessRequest> requests = requests_of(options, list);
+    keep_shard(options.shard, requests);
     set_thread_limit(options.general.threads);
     if (!list.is_single()) return process_all(app, requests, options.report, options.general);
     return process_one(app, requests.front(), options);
@@ -498,6 +503,9 @@ void add_options(CLI::App& app, ProcessOptions& options) {
     add_model_files(app, options.words, options.format);
     add_normal_options(app, options.request);
     add_tangent_options(app, options.request);
+    add_shard_option(app, options.shard,
+                     "Process only every N-th model, from the K-th on, so that several machines "
+                     "share them: together, shards 1/N to N/N process each model once.");
     add_report_options(app, options.report);
     add_general_options(app, options.general);
     set_examples(

@@ -13,6 +13,7 @@
 #include "common/file_jobs.h"
 #include "common/model_file.h"
 #include "common/options.h"
+#include "common/shard_choice.h"
 #include "common/summary.h"
 #include "driver.h"
 #include "make_cache.h"
@@ -29,6 +30,7 @@ struct MakeCommand {
     FileWords words;
     std::optional<std::filesystem::path> job_file;
     MakeRequest request;
+    std::optional<ShardChoice> shard;
     ReportOptions report;
     GeneralOptions general;
     bool explain = false;
@@ -224,7 +226,8 @@ ExitCode make_all(const CLI::App& app, const MakeCommand& command, const TaskLis
         const MadeAsset made = make_file(request, job, stages);
         entries[index].facts = index_facts(made);
         cache.add(job.output, options, made.inputs, made.files, entries[index].facts);
-        cache.write();
+        // Shards would overwrite each other's entries.
+        if (!command.shard) cache.write();
         return {line_of(job, made, stages), made.findings,
                 with_options(summary_of(request, job, made, stages))};
     };
@@ -285,7 +288,7 @@ TaskList read_tasks(const CLI::App& app, const MakeCommand& command) {
 }
 
 ExitCode make(const CLI::App& app, const MakeCommand& command) {
-    const TaskList list = command.job_file ? read_tasks(app, command) : make_tasks_of(command);
+    TaskList list = command.job_file ? read_tasks(app, command) : make_tasks_of(command);
     if (command.request.stages_folder && !list.is_single) {
         throw UsageError(fmt::format("--keep-stages {}: keeps the stages of one asset",
                                      command.request.stages_folder->string()),
@@ -298,8 +301,11 @@ ExitCode make(const CLI::App& app, const MakeCommand& command) {
     }
     if (!command.job_file) check_asset_options(app, command.request);
     check_start(command);
+    if (command.shard && list.is_single)
+        throw UsageError("--shard: divides several assets", "give an output folder with -o");
     set_thread_limit(command.general.threads);
     if (!command.explain) check_outputs(command, list);
+    keep_shard(command.shard, list.tasks);
     Json head = {{"tool", "relief make"}, {"version", version()}};
     if (command.job_file)
         head["job"] = command.job_file->string();
@@ -352,6 +358,10 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
                "In a folder, make all assets again. Otherwise those whose options and files are "
                "unchanged are left as they are, by the file relief-make.json of the folder.")
         .group(output);
+    add_shard_option(app, command.shard,
+                     "Make only every N-th asset, from the K-th on, so that several machines share "
+                     "them: together, shards 1/N to N/N make each asset once. They use "
+                     "relief-make.json, but do not write it.");
     add_switch(app, "--explain", command.explain,
                "Print the stages with estimated times, and make nothing. The output need not be "
                "named. --report FILE.json: also write them as JSON.")
