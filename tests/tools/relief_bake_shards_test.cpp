@@ -121,7 +121,7 @@ TEST(BakeMerge, RefusesMixedRepeatedMissingAndDamagedParts) {
     std::string damaged = workplace.read("parts/2");
     damaged[200] = static_cast<char>(damaged[200] ^ 1);
     workplace.write("parts/damaged", damaged);
-    workplace.run("rm out/*");
+    ASSERT_EQ(workplace.run("rm out/*").exit_code, 0);
     expect_refusals(
         workplace, "relief-bake", "out/map.png",
         {{"merge", 2, "no part is given"},
@@ -180,7 +180,7 @@ TEST(BakeShard, IsNamedByItsJobAndCanBeRepeated) {
 TEST(BakeShard, RefusesOptionsThatNeedTheWholeMap) {
     const Parts parts;
     const std::string line = "mesh high.obj low.obj out/map.png --size 64 ";
-    parts.workplace.run("rm out/*");
+    ASSERT_EQ(parts.workplace.run("rm out/*").exit_code, 0);
     expect_refusals(
         parts.workplace, "relief-bake", "out/map.png",
         {{line + "--shard 0/3", 2, "--shard 0/3: "},

@@ -15,12 +15,14 @@
 namespace relief::tools {
 namespace {
 
-/// The files that a bake read, and hashes of their contents.
+/// The files that a bake read, and hashes of their contents. Names are relative to the current
+/// folder, which may have another name on another machine.
 std::vector<std::pair<std::string, std::string>> hashes_of(
     const std::vector<std::filesystem::path>& files) {
+    const std::filesystem::path here = std::filesystem::current_path();
     std::set<std::string> names;
     for (const std::filesystem::path& file : files)
-        names.insert(file.string());
+        names.insert(file.is_absolute() ? file.lexically_proximate(here).string() : file.string());
     std::vector<std::pair<std::string, std::string>> hashes;
     for (const std::string& name : names) {
         std::string hash = "missing";  // Searched and not found.
