@@ -59,7 +59,7 @@ TEST(BakeMerge, HasTheBytesOfOneBakeInEveryLayer) {
     const std::string line =
         "relief-bake mesh data/urn-high.ply data/urn-low.obj out/map.png --size 72x150 --samples 4 "
         "--height-map out/h.png --occlusion-map out/o.png --occlusion-rays 4 --curvature-map "
-        "out/c.png --position-map out/p.exr --color-map out/k.png --bent-normal-map out/b.png "
+        "out/c.png --position-map out/p.png --color-map out/k.png --bent-normal-map out/b.png "
         "--thickness-map out/t.tif --thickness-rays 4 --id-map out/i.png ";
     expect_equal(workplace, line + "--layer-bits 16 --background transparent", 16);
     expect_equal(workplace,
@@ -123,7 +123,7 @@ TEST(BakeMerge, RefusesMixedRepeatedMissingAndDamagedParts) {
     workplace.write("parts/damaged", damaged);
     ASSERT_EQ(workplace.run("rm out/*").exit_code, 0);
     expect_refusals(
-        workplace, "relief-bake", "out/map.png",
+        workplace, "relief-bake", "map.png",
         {{"merge", 2, "no part is given"},
          {"merge parts/1 parts/2", 1, "parts/1: 1 of 3 parts is missing: 3 (bake them with"},
          {"merge parts/3", 1, "parts/3: 2 of 3 parts are missing: 1, 2"},
@@ -132,7 +132,8 @@ TEST(BakeMerge, RefusesMixedRepeatedMissingAndDamagedParts) {
           "parts/padded: belongs to another bake than parts/1: the options or files differ"},
          {"merge parts/1 parts/four parts/3", 1,
           "parts/four: belongs to another bake than parts/1: one is of 3 parts, one of 4"},
-         {"merge parts/1 parts/changed parts/3", 1, "the contents of high.obj differ"},
+         {"merge parts/1 parts/changed parts/3", 1,
+          "parts/changed: belongs to another bake than parts/1: the contents of high.obj differ"},
          {"merge parts/1 parts/short parts/3", 1, "parts/short: is damaged: it has no end"},
          {"merge parts/1 parts/text parts/3", 1, "parts/text: is no part of a bake"},
          {"merge parts/1 parts/damaged parts/3", 1, "parts/damaged: is damaged: the hash of rows"},
@@ -182,13 +183,13 @@ TEST(BakeShard, RefusesOptionsThatNeedTheWholeMap) {
     const std::string line = "mesh high.obj low.obj out/map.png --size 64 ";
     ASSERT_EQ(parts.workplace.run("rm out/*").exit_code, 0);
     expect_refusals(
-        parts.workplace, "relief-bake", "out/map.png",
+        parts.workplace, "relief-bake", "map.png",
         {{line + "--shard 0/3", 2, "--shard 0/3: "},
          {line + "--shard 4/3", 2, "--shard 4/3: "},
          {line + "--shard 3", 2, "--shard 3: is not K/N (write 3/16)"},
-         {line + "--shard 1/2/3", 2, "is not K/N"},
+         {line + "--shard 1/2/3", 2, "--shard 1/2/3: is not K/N"},
          {line + "--part x", 2, "--part: has no effect without --shard"},
-         {line + "--shard 1/2 --part low.obj", 2, "low.obj"},
+         {line + "--shard 1/2 --part low.obj", 2, "--part low.obj: is also"},
          {line + "--shard 1/2 --verify", 2, "--verify, --shard: contradict each other"},
          {line + "--shard 1/2 --compare", 2, "--compare, --shard: contradict each other"},
          {line + "--shard 1/2 --max-error 1", 2, "--max-error, --shard: contradict each other"},
