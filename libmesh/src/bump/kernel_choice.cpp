@@ -34,13 +34,20 @@ constexpr double tie_factor = 1.003;
 /// Smaller maps contain too little information for an estimate.
 constexpr std::size_t min_texels = 64;
 
+bool has_less_error(const KernelPrediction& a, const KernelPrediction& b) {
+    return a.rms_degrees < b.rms_degrees;
+}
+
+/// Measures all kernels on a sample of the parts, and those that may be the best on all parts.
 std::vector<KernelPrediction> all_predictions(const KernelErrorModel& model) {
+    constexpr bool of_sample = true;
+    constexpr double max_factor = 1.25;
     std::vector<KernelPrediction> all;
     for (const Kernel kernel : fixed_kernels)
-        all.push_back(model.predict(kernel, 2));
+        all.push_back(model.predict(kernel, 2, of_sample));
     double min_error = std::numeric_limits<double>::infinity();
     for (const int radius : radii) {
-        all.push_back(model.predict(Kernel::gaussian, radius));
+        all.push_back(model.predict(Kernel::gaussian, radius, of_sample));
         min_error = std::min(min_error, all.back().rms_degrees);
         // Larger radii only increase the error, and none improves on 0. High outliers spread over
         // more texels before the error decreases again.
@@ -48,11 +55,13 @@ std::vector<KernelPrediction> all_predictions(const KernelErrorModel& model) {
         if (min_error == 0.0 && radius >= 3) break;
         if (radius >= min_radius && all.back().rms_degrees > 1.3 * min_error) break;
     }
+    const double limit =
+        max_factor * std::min_element(all.begin(), all.end(), has_less_error)->rms_degrees;
+    for (KernelPrediction& prediction : all) {
+        if (model.has_sample() && prediction.rms_degrees <= limit)
+            prediction = model.predict(prediction.kernel, prediction.gaussian_radius);
+    }
     return all;
-}
-
-bool has_less_error(const KernelPrediction& a, const KernelPrediction& b) {
-    return a.rms_degrees < b.rms_degrees;
 }
 
 /// \param all  from fast to slow
@@ -112,9 +121,20 @@ std::string reason_text(const KernelErrorModel& model, const BumpOptions& option
         coding, problem, kernel.order);
 }
 
+constexpr std::size_t many_parts = 9;
+
+/// Returns the four corners and the center of 3 x 3 parts. Others are all returned.
+std::vector<Image> every_other(std::span<const Image> parts) {
+    std::vector<Image> result;
+    const std::size_t step = parts.size() == many_parts ? 2 : 1;
+    for (std::size_t i = 0; i < parts.size(); i += step)
+        result.push_back(parts[i]);
+    return result;
+}
+
 /// Returns the centers of the parts, a quarter of each. Empty if they would contain too little.
 std::vector<Image> centers_of(std::span<const Image> parts) {
-    constexpr std::size_t min_parts = 9;
+    constexpr std::size_t min_parts = (many_parts + 1) / 2;
     constexpr int part_side = 128;
     constexpr int side = 64;
     constexpr int offset = (part_side - side) / 2;  // A multiple of the blocks of JPEG.
@@ -311,11 +331,12 @@ KernelChoice choose_kernel(std::span<const Image> parts, const BumpOptions& opti
     const std::optional<NoiseSpectrum> blurred = blurred_noise_of(parts, coding);
     KernelChoice choice;
     // The centers of many parts suffice, except for kernels that are wide compared with them.
-    const std::vector<Image> centers = centers_of(parts);
+    const std::vector<Image> sample = every_other(parts);
+    const std::vector<Image> centers = centers_of(sample);
     if (!centers.empty())
         choice = choice_on(centers, coding, blurred, options, destaircased, grain);
     if (centers.empty() || is_wide(choice))
-        choice = choice_on(parts, coding, blurred, options, destaircased, grain);
+        choice = choice_on(sample, coding, blurred, options, destaircased, grain);
     std::size_t texels = 0;
     for (const Image& part : parts)
         texels += part.sample_count();

@@ -81,11 +81,14 @@ HeightTile smoothed(HeightTile tile) {
 }
 
 double root_mean_square_rounding(std::span<const HeightTile> tiles, const HeightCoding& coding) {
+    if (coding.depth.bits > 0) return coding.rounding_deviation(0.0);
     double squares = 0.0;
     double count = 0.0;
     for (const HeightTile& tile : tiles) {
-        for (const double value : tile.values)
-            squares += coding.rounding_deviation(value) * coding.rounding_deviation(value);
+        for (const double value : tile.values) {
+            const double deviation = coding.rounding_deviation(value);
+            squares += deviation * deviation;
+        }
         count += static_cast<double>(tile.values.size());
     }
     return std::sqrt(squares / count);
@@ -237,17 +240,19 @@ class SquaredAngles {
 /// Sums the squared angles between float normals and the reference. A series of the chord length
 /// approximates the angle; it is exact for small angles and 1% too small at 90 degrees.
 ///
-/// \param margin  texels along the border to exclude
-SquaredAngles squared_angles(const Image& normals, std::span<const glm::dvec3> reference,
-                             int margin) {
+/// \param offset  texels along the border that the normals do not have
+/// \param margin  texels along the border of the reference to exclude
+SquaredAngles squared_angles(const Image& normals, int offset,
+                             std::span<const glm::dvec3> reference, int margin) {
     const std::span<const float> n = normals.as<float>();
+    const int width = normals.width + 2 * offset;
     SquaredAngles result;
-    for (int y = margin; y < normals.height - margin; ++y) {
-        for (int x = margin; x < normals.width - margin; ++x) {
-            const auto i = static_cast<std::size_t>(y * normals.width + x);
-            if (reference[i] == glm::dvec3(0.0)) continue;
-            const glm::dvec3 chord =
-                glm::dvec3(n[3 * i], n[3 * i + 1], n[3 * i + 2]) - reference[i];
+    for (int y = margin; y < normals.height + 2 * offset - margin; ++y) {
+        for (int x = margin; x < width - margin; ++x) {
+            const glm::dvec3& exact = reference[static_cast<std::size_t>(y * width + x)];
+            if (exact == glm::dvec3(0.0)) continue;
+            const auto i = static_cast<std::size_t>((y - offset) * normals.width + x - offset);
+            const glm::dvec3 chord = glm::dvec3(n[3 * i], n[3 * i + 1], n[3 * i + 2]) - exact;
             const double square = glm::dot(chord, chord);
             const double angle_per_chord = 1.0 + square * (1.0 / 24.0 + square * (3.0 / 640.0));
             result.add(square * angle_per_chord * angle_per_chord);
@@ -269,11 +274,12 @@ HeightCoding coding_of(std::span<const Image> parts) {
 
 std::optional<NoiseSpectrum> blurred_noise_of(std::span<const Image> parts,
                                               const HeightCoding& coding) {
-    std::vector<HeightTile> tiles(parts.size());
-    std::transform(parts.begin(), parts.end(), tiles.begin(), to_tile);
-    if (!have_spectrum(tiles) || tiles.front().width < 16) return std::nullopt;
     constexpr std::size_t many = 9;
-    if (tiles.size() >= many) tiles = every_fourth(tiles);
+    const std::size_t step = parts.size() >= many ? 4 : 1;
+    std::vector<HeightTile> tiles;
+    for (std::size_t i = 0; i < parts.size(); i += step)
+        tiles.push_back(to_tile(parts[i]));
+    if (!have_spectrum(tiles) || tiles.front().width < 16) return std::nullopt;
     return widely_blurred_noise(tiles, root_mean_square_rounding(tiles, coding));
 }
 
@@ -373,6 +379,13 @@ void KernelErrorModel::interpret(Grain grain) {
     if (stored_is_reference_ && !tiles_with_lines_.empty()) tiles_ = tiles_with_lines_;
 }
 
+NoiseSpectrum KernelErrorModel::white_noise(double rounding) const {
+    double deviation = std::max(white_deviation_, rounding);
+    // The windows of the spectrum do not weight all heights alike.
+    if (noise_by_height_ && spectrum_) deviation = std::max(deviation, spectrum_->white_floor());
+    return NoiseSpectrum::white(deviation);
+}
+
 void KernelErrorModel::restore() {
     if (stored_is_reference_ || (blocks_ && grain_ == 0.0)) return;
     const double rounding = root_mean_square_rounding(tiles_, coding_);
@@ -385,9 +398,7 @@ void KernelErrorModel::restore() {
     const bool use_spectrum = colored_noise_ || (spectrum_ && high_pass_.is_white &&
                                                  high_pass_.deviation > min_ratio * rounding);
     if (!use_spectrum && step == 0.0) return;
-    const NoiseSpectrum noise = colored_noise_
-                                    ? *colored_noise_
-                                    : NoiseSpectrum::white(std::max(white_deviation_, rounding));
+    const NoiseSpectrum noise = colored_noise_ ? *colored_noise_ : white_noise(rounding);
     if (use_spectrum) {
         const std::vector<double> gains = spectrum_->gains(noise);
         const std::size_t pairs = (tiles_.size() + 1) / 2;
@@ -502,8 +513,10 @@ void KernelErrorModel::degrade() {
 }
 
 KernelErrorModel::KernelErrorModel(std::span<const Image> parts, const HeightCoding& coding,
-                                   const BumpOptions& options, bool destaircased, Grain grain)
-    : options_(options), destaircased_(destaircased), coding_(coding) {
+                                   const BumpOptions& options, bool destaircased, Grain grain) {
+    options_ = options;
+    destaircased_ = destaircased;
+    coding_ = coding;
     options_.wrap = Wrap::clamp;
     options_.arithmetic = Arithmetic::float64;
     tiles_.resize(parts.size());
@@ -518,7 +531,7 @@ KernelErrorModel::KernelErrorModel(std::span<const Image> parts, const HeightCod
 }
 
 KernelErrorModel KernelErrorModel::interpreted(Grain grain) const {
-    KernelErrorModel other = *this;
+    KernelErrorModel other(static_cast<const KernelProperties&>(*this));
     other.tiles_ = every_fourth(noisy_tiles_);
     other.tiles_with_lines_ = every_fourth(tiles_with_lines_);
     other.interpret(grain);
@@ -529,16 +542,14 @@ KernelErrorModel KernelErrorModel::interpreted(Grain grain) const {
 
 KernelPrediction KernelErrorModel::predict_upper(const KernelPrediction& prediction) const {
     if (!spectrum_ || coding_.has_exact_levels) return prediction;
-    KernelErrorModel upper = *this;
+    KernelErrorModel upper(static_cast<const KernelProperties&>(*this));
     upper.tiles_ = every_fourth(tiles_);
     upper.reference_normals_ = every_fourth(reference_normals_);
     upper.degraded_ = every_fourth(degraded_);
     const KernelPrediction sample = upper.predict(prediction.kernel, prediction.gaussian_radius);
     const double rounding = root_mean_square_rounding(tiles_, coding_);
     NoiseSpectrum noise = NoiseSpectrum::white(rounding);
-    if (noise_ > 0.0)
-        noise = colored_noise_ ? *colored_noise_
-                               : NoiseSpectrum::white(std::max(white_deviation_, rounding));
+    if (noise_ > 0.0) noise = colored_noise_ ? *colored_noise_ : white_noise(rounding);
     upper.unresolved_slope_ = spectrum_->unresolved_slope(noise);
     if (!is_noisy() && !stored_is_reference_) {
         // Fine detail can be blurred noise.
@@ -594,18 +605,25 @@ double KernelErrorModel::degrees_of_noise(Kernel kernel, int radius,
     return count > 0.0 ? std::sqrt(sum / count) * 180.0 / std::numbers::pi : 0.0;
 }
 
-KernelPrediction KernelErrorModel::predict(Kernel kernel, int radius) const {
+KernelPrediction KernelErrorModel::predict(Kernel kernel, int radius, bool of_sample) const {
     BumpOptions options = options_;
     options.kernel = kernel;
     options.gaussian_radius = radius;
-    std::vector<SquaredAngles> part_errors(degraded_.size());
-    parallel_for(degraded_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    const int reach = gradient_kernel(kernel, radius).radius;
+    // A sample consists of parts on a diagonal.
+    const std::size_t step = of_sample && has_sample() ? 3 : 1;
+    std::vector<SquaredAngles> part_errors((degraded_.size() + step - 1) / step);
+    parallel_for(part_errors.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            Report ignored;
-            const Image normals = normals_from_height(degraded_[i], options, ignored);
+            const Image& part = degraded_[i * step];
             // Close to the border of a part, the kernel reads extrapolated heights.
-            const int margin = std::min(normals.width, normals.height) / 8;
-            part_errors[i] = squared_angles(normals, reference_normals_[i], margin);
+            const int margin = std::min(part.width, part.height) / 8;
+            const int offset = std::max(0, margin - reach);
+            Report ignored;
+            const Image normals = normals_from_height(
+                part_of(part, {offset, offset, part.width - 2 * offset, part.height - 2 * offset}),
+                options, ignored);
+            part_errors[i] = squared_angles(normals, offset, reference_normals_[i * step], margin);
         }
     });
     SquaredAngles all;

@@ -35,8 +35,33 @@ struct HeightCoding {
     [[nodiscard]] double rounding_deviation(double height) const;
 };
 
+/// The properties of a map, without its texels.
+struct KernelProperties {
+    BumpOptions options_;
+    bool destaircased_ = false;
+    HeightCoding coding_;
+    double rounding_ = 0.0;                    ///< RMS of the rounding_deviation() of the map.
+    std::optional<BlockQuantization> blocks_;  ///< Of maps that were stored as JPEG.
+    LineNoise lines_;
+    double grain_ = 0.0;  ///< Without offsets of lines.
+    double noise_ = 0.0;  ///< Like `grain_`; 0 if grain counts as detail.
+    std::optional<NoiseByHeight> noise_by_height_;
+    bool is_noise_blurred_ = false;
+    bool is_only_grain_ = false;
+    bool stored_is_reference_ = false;  ///< True if grain counts as detail.
+    std::optional<PowerSpectrum> spectrum_;
+    std::optional<NoiseSpectrum> colored_noise_;  ///< Noise and rounding, if they are not white.
+    std::optional<NoiseSpectrum> max_noise_;      ///< The strongest noise that the map allows.
+    double unresolved_slope_ = 0.0;               ///< RMS slope that texels do not resolve.
+    HighPassNoise high_pass_;
+    double white_deviation_ = 0.0;  ///< Standard deviation of white noise and rounding.
+    double outlier_share_ = 0.0;
+    std::vector<double> outliers_;  ///< The heights of the outliers.
+    double edge_share_ = 0.0;
+};
+
 /// A reference surface and its degraded version, both from parts of a map.
-class KernelErrorModel {
+class KernelErrorModel : KernelProperties {
   public:
     /// \param parts  one channel each
     KernelErrorModel(std::span<const Image> parts, const HeightCoding& coding,
@@ -46,8 +71,12 @@ class KernelErrorModel {
     /// the parts.
     [[nodiscard]] KernelErrorModel interpreted(Grain grain) const;
 
+    /// Returns true if there are enough parts for a sample of them.
+    [[nodiscard]] bool has_sample() const { return degraded_.size() >= 4; }
     /// Measures the errors of a kernel on the degraded parts.
-    [[nodiscard]] KernelPrediction predict(Kernel kernel, int radius) const;
+    ///
+    /// \param of_sample  only on some of the parts
+    [[nodiscard]] KernelPrediction predict(Kernel kernel, int radius, bool of_sample = false) const;
 
     /// Estimates the maximum error for properties that the map does not reveal: noise that hides or
     /// resembles detail, and detail smaller than texels. The result is an estimate, not a bound.
@@ -81,39 +110,21 @@ class KernelErrorModel {
     [[nodiscard]] double edge_share() const { return edge_share_; }
 
   private:
+    explicit KernelErrorModel(const KernelProperties& properties) : KernelProperties(properties) {}
     void remove_blocks();
     void remove_outliers();
     void detect_grain();
     void interpret(Grain grain);
+    /// Returns the white noise and rounding that the spectrum contains.
+    [[nodiscard]] NoiseSpectrum white_noise(double rounding) const;
     void restore();
     void add_line_noise(HeightTile& tile, Random& random) const;
     [[nodiscard]] Image degraded(const HeightTile& tile, std::uint32_t seed) const;
     void degrade();
 
-    BumpOptions options_;
-    bool destaircased_ = false;
-    HeightCoding coding_;
-    double rounding_ = 0.0;                ///< RMS of the rounding_deviation() of the map.
     std::vector<HeightTile> tiles_;        ///< The parts, which restore() turns into the reference.
     std::vector<HeightTile> noisy_tiles_;  ///< Before restore(), without offsets of lines.
     std::vector<HeightTile> tiles_with_lines_;  ///< With these offsets; empty if there are none.
-    std::optional<BlockQuantization> blocks_;   ///< Of maps that were stored as JPEG.
-    LineNoise lines_;
-    double grain_ = 0.0;  ///< Without offsets of lines.
-    double noise_ = 0.0;  ///< Like `grain_`; 0 if grain counts as detail.
-    std::optional<NoiseByHeight> noise_by_height_;
-    bool is_noise_blurred_ = false;
-    bool is_only_grain_ = false;
-    bool stored_is_reference_ = false;  ///< True if grain counts as detail.
-    std::optional<PowerSpectrum> spectrum_;
-    std::optional<NoiseSpectrum> colored_noise_;  ///< Noise and rounding, if they are not white.
-    std::optional<NoiseSpectrum> max_noise_;      ///< The strongest noise that the map allows.
-    double unresolved_slope_ = 0.0;               ///< RMS slope that texels do not resolve.
-    HighPassNoise high_pass_;
-    double white_deviation_ = 0.0;  ///< Standard deviation of white noise and rounding.
-    double outlier_share_ = 0.0;
-    std::vector<double> outliers_;  ///< The heights of the outliers.
-    double edge_share_ = 0.0;
     std::vector<std::vector<glm::dvec3>> reference_normals_;  ///< 0 beside step edges.
     std::vector<Image> degraded_;
 };

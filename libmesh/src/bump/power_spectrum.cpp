@@ -203,10 +203,22 @@ std::size_t PowerSpectrum::bin_at(double x, double y) const {
     const double length = std::sqrt(x * x + y * y) * side_ / (2.0 * pi);
     const int ring = std::min(side_ - 1, static_cast<int>(length + 0.5));
     // Opposite frequencies belong to the same wave.
-    double angle = portable::atan2(y, x);
-    if (angle < 0.0) angle += pi;
-    // Sectors are centered on the axes, since many synthetic textures have waves along them.
-    const int sector = static_cast<int>(std::floor(angle / pi * sectors + 0.5)) % sectors;
+    if (y < 0.0 || (y == 0.0 && x < 0.0)) {
+        x = -x;
+        y = -y;
+    }
+    // Sectors are centered on the axes, since many synthetic textures have waves along them. They
+    // end at odd multiples of pi / 16, whose cosines and sines these are.
+    constexpr double c1 = 0.9807852804032304;
+    constexpr double s1 = 0.19509032201612825;
+    constexpr double c3 = 0.8314696123025452;
+    constexpr double s3 = 0.5555702330196022;
+    static constexpr double ends[sectors][2] = {{c1, s1},  {c3, s3},  {s3, c3},  {s1, c1},
+                                                {-s1, c1}, {-s3, c3}, {-c3, s3}, {-c1, s1}};
+    int sector = 0;
+    for (const auto& [cosine, sine] : ends)
+        sector += y * cosine > x * sine ? 1 : 0;
+    sector %= sectors;
     return static_cast<std::size_t>(ring * sectors + sector);
 }
 

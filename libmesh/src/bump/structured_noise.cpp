@@ -131,7 +131,8 @@ std::optional<NoiseByHeight> noise_by_height(std::span<const HeightTile> tiles) 
         const std::vector<double> magnitudes = high_pass(tile, 2);
         constexpr int margin = 2;  // Of high_pass().
         std::size_t next = 0;
-        for (int y = margin; y < tile.height - margin; ++y) {
+        for (int y = margin; y < tile.height - margin; y += 2) {
+            next = static_cast<std::size_t>((y - margin) * (tile.width - 2 * margin));
             for (int x = margin; x < tile.width - margin; ++x) {
                 samples.emplace_back(smooth.values[static_cast<std::size_t>(y * tile.width + x)],
                                      magnitudes[next++]);
@@ -142,14 +143,26 @@ std::optional<NoiseByHeight> noise_by_height(std::span<const HeightTile> tiles) 
     NoiseByHeight noise;
     std::vector<double> tails;  // Ratios of deviations by the median and by the quantile.
     std::vector<double> magnitudes;
+    std::size_t begin = 0;
     const auto sample_at = [&](std::size_t i) {
         return samples.begin() + static_cast<std::ptrdiff_t>(i);
     };
     for (std::size_t i = 0; i < classes; ++i) {
-        const std::size_t begin = samples.size() * i / classes;
-        const std::size_t end = samples.size() * (i + 1) / classes;
-        // Moves the samples of the class to its place, and those of larger heights behind it.
-        if (end < samples.size()) std::nth_element(sample_at(begin), sample_at(end), samples.end());
+        std::size_t end = samples.size() * (i + 1) / classes;
+        if (begin >= end) continue;
+        // Moves the samples of the class to its place, and those of larger heights behind it. A
+        // flat ground is one class.
+        if (end < samples.size()) {
+            std::nth_element(sample_at(begin), sample_at(end), samples.end());
+            const double last = sample_at(end)->first;
+            if (std::count_if(sample_at(begin), sample_at(end),
+                              [last](const auto& sample) { return sample.first >= last; }) > 0) {
+                end = static_cast<std::size_t>(
+                    std::partition(sample_at(end), samples.end(),
+                                   [last](const auto& sample) { return sample.first <= last; }) -
+                    samples.begin());
+            }
+        }
         std::nth_element(sample_at(begin), sample_at((begin + end) / 2), sample_at(end));
         magnitudes.clear();
         for (std::size_t k = begin; k < end; ++k)
@@ -161,13 +174,17 @@ std::optional<NoiseByHeight> noise_by_height(std::span<const HeightTile> tiles) 
         tails.push_back(*middle / 0.6745 / deviation);
         noise.heights.push_back(samples[(begin + end) / 2].first);
         noise.deviations.push_back(deviation);
+        begin = end;
     }
+    constexpr std::size_t min_classes = 3;
+    const std::size_t count = noise.heights.size();
+    if (count < min_classes) return std::nullopt;
     const double max_deviation =
         *std::max_element(noise.deviations.begin(), noise.deviations.end());
-    for (std::size_t i = 0; i < classes; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
         // Detail is in few texels, and its distribution has a longer tail. A ground without noise
         // has any distribution.
-        constexpr double max_tail = 1.2;
+        constexpr double max_tail = 1.4;
         constexpr double max_ground = 0.05;
         if (noise.deviations[i] > max_ground * max_deviation && !(tails[i] <= max_tail))
             return std::nullopt;
@@ -176,7 +193,7 @@ std::optional<NoiseByHeight> noise_by_height(std::span<const HeightTile> tiles) 
     constexpr double min_growth = 1.5;
     constexpr double tolerance = 1.1;
     const bool grows = noise.deviations.back() > noise.deviations.front();
-    for (std::size_t i = 1; i < classes; ++i) {
+    for (std::size_t i = 1; i < count; ++i) {
         const double low = noise.deviations[grows ? i - 1 : i];
         const double high = noise.deviations[grows ? i : i - 1];
         if (low > tolerance * high) return std::nullopt;

@@ -305,7 +305,9 @@ struct KernelChoice {
         return otherwise && otherwise->rms_degrees > 1.0 &&
                otherwise->rms_degrees > 1.5 * otherwise->best.rms_degrees;
     }
-    std::vector<KernelPrediction> predictions;  ///< All examined kernels, smallest error first.
+    /// All examined kernels, smallest error first. The errors of kernels that are not close to the
+    /// best one are those of a sample of the parts.
+    std::vector<KernelPrediction> predictions;
 };
 
 /// Formats the expected error in degrees: "1.3", or "1.3 to 9.9" if it is a range.
