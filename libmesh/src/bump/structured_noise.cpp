@@ -149,7 +149,7 @@ std::optional<NoiseByHeight> noise_by_height(std::span<const HeightTile> tiles) 
     };
     for (std::size_t i = 0; i < classes; ++i) {
         std::size_t end = samples.size() * (i + 1) / classes;
-        if (begin >= end) continue;
+        if (begin + min_samples > end) continue;
         // Moves the samples of the class to its place, and those of larger heights behind it. A
         // flat ground is one class.
         if (end < samples.size()) {

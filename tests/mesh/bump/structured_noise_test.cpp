@@ -84,6 +84,20 @@ TEST(NoiseByHeight, GrowsFromAGroundWithoutNoise) {
     EXPECT_LT(noise->at(0.0), 0.01);
 }
 
+TEST(NoiseByHeight, GrowsAboveAFlatGroundThatIsMostOfTheMap) {
+    Random random(9);
+    const auto ground = [](int x, int y) { return std::max(0.0, smooth_surface(x, y) - 0.5); };
+    const HeightTile tile = tile_with([&](int x, int y) {
+        const double height = ground(x, y);
+        return height + 0.05 * height * random.normal();
+    });
+    const auto noise = noise_by_height(std::span(&tile, 1));
+    ASSERT_TRUE(noise);
+    EXPECT_NEAR(noise->at(4.0), 0.2, 0.05);
+    EXPECT_LT(noise->at(0.0), 0.01);
+    EXPECT_FALSE(noise_by_height(std::vector{tile_with(ground)}));
+}
+
 TEST(BlockQuantization, StepsAreEstimatedFromDecodedHeights) {
     BlockQuantization steps;
     for (std::size_t i = 0; i < steps.steps.size(); ++i)
