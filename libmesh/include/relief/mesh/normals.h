@@ -153,7 +153,7 @@ struct CornerNormals {
 /// positions on a line, the triangles along its longest side and along its other sides share an
 /// edge; if two corners are at one position, the triangles at both sides share one already. So
 /// collapsed triangles change no other normal. Their own corners take the first one by value of the
-/// other triangles at their vertex, or else position. If all triangles occur twice, nothing changes.
+/// other triangles at their vertex, else position. If all triangles occur twice, nothing changes.
 /// Vertices whose corners differ must be split: see frames.h. The same input gives the same bits,
 /// as for vertex_normals(), and so does any order of vertices and any first corner of triangles.
 CornerNormals corner_normals(StridedSpan<const glm::vec3> positions, TriangleSpan triangles,
