@@ -152,7 +152,7 @@ KeyedVertices::KeyedVertices(const Mesh& mesh, std::span<const std::uint32_t> ke
         }
     }
     std::ranges::sort(pairs);
-    pairs.erase(std::ranges::unique(pairs).begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     first_.assign(mesh.positions.size() + 1, 0);
     uses_.reserve(pairs.size());
     for (const auto& [vertex, key] : pairs) {

@@ -338,6 +338,7 @@ def make(
     *,
     more_sources: Sequence[str | os.PathLike[str]] = (),
     up: Literal["y", "z", "auto"] = "auto",
+    source_crease: float | Literal["auto"] | None = "auto",
     triangles: int = 5000,
     crease: float | None = 60.0,
     lods: int = 0,
@@ -366,8 +367,9 @@ def make(
     """Make an asset with maps from the file of a dense model, as `relief make` does (docs/make.md).
 
     The arguments are the options of the command: `more_sources` are further files of the model (--with), `up` is its
-    axis that becomes y (auto: z for STL files), `crease` is in degrees, or None for smooth edges, `repair=False` is --no-repair, `engine` is --for, `more_views` are (azimuth,
-    elevation) in degrees (--view), and `start` is --from, the stage at which the files of `keep_stages` are used.
+    axis that becomes y (auto: z for STL files), `source_crease` and `crease` are in degrees, or None for smooth edges,
+    `repair=False` is --no-repair, `engine` is --for, `more_views` are (azimuth, elevation) in degrees (--view), and
+    `start` is --from, the stage at which the files of `keep_stages` are used.
 
     It runs in a process of its own. The result is the report of `relief make --report`: the stages, the numbers of
     triangles, the maps and the findings, with `loss` what was lost, and with limits of it (in degrees, and of FLIP)

@@ -76,28 +76,7 @@ const Report& report_of(const Asset& asset, const std::string& stage) {
     return std::ranges::find(asset.reports, stage, &StageReport::stage)->report;
 }
 
-TEST(MakeAsset, DecimatesNoisySurfacesInSteps) {
-    Mesh noisy = test::grid(140);
-    std::mt19937 random(1);
-    for (glm::vec3& p : noisy.positions) {
-        const float noise = static_cast<float>(random()) / 4294967296.0F;
-        p.z = 0.1F * std::sin(9.0F * p.x) * std::sin(9.0F * p.y) + 0.005F * noise;
-    }
-    noisy = test::mesh_from(noisy.positions, noisy.triangles);
-    AssetOptions options = quick_options(800);
-    options.occlusion = false;
-    const Asset asset = make_asset(source_of(noisy), options);
-    DecimateOptions limits;
-    limits.triangles = 800;
-    limits.goal = DecimateGoal::distance;
-    limits.fit_positions = true;
-    const Mesh at_once = decimated(noisy, limits, IgnoredReport()).mesh;
-    const double error = surface_distance(noisy, asset.mesh).from_a.rms;
-    EXPECT_LT(error, 0.85 * surface_distance(noisy, at_once).from_a.rms);
-    EXPECT_LE(asset.mesh.triangles.size(), 800U);
-}
-
-TEST(MakeAsset, DecimatesManySmallPartsInOneStep) {
+TEST(MakeAsset, KeepsTheShapeOfManySmallParts) {
     const Mesh part = test::sphere(16, 8);
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;

@@ -73,6 +73,7 @@ TEST(JobFile, IsRefusedWithTheLineAndTheKeyBeforeAnythingIsMade) {
     const std::string good = R"({"input": "data/vase.obj", "output": "out/a.glb"})";
     expect_fault("{\"assets\": [" + good + ",\n{\"input\": \"data/vase.obj\",\n\"trianlges\": 5}]}",
                  "line 3: assets[1].trianlges: unknown key (not one of input, output, with, up, "
+                 "source-crease, "
                  "triangles,");
     expect_fault("{\"defaults\":\n{\"report\": 5},\"assets\": [" + good + "]}",
                  "line 2: defaults.report: unknown key");

@@ -139,7 +139,8 @@ TEST(Remeshing, KeepsOpenWallsThatAClosedSurfaceWouldLose) {
     EXPECT_LT(asset.remesh->distance->max_of_surface, max_remesh_distance * asset.remesh->cell);
     EXPECT_THAT(asset.remesh->reason, HasSubstr("cells away"));
     EXPECT_EQ(report_of_stage(asset, "remesh").count(kept_finding), 1U);
-    EXPECT_GT(bounds_of(asset.mesh).max.x, 5.0F) << "the bowl is in the asset";
+    // The bowl has about twenty triangles. The spheres end at 3.7.
+    EXPECT_GT(bounds_of(asset.mesh).max.x, 4.5F) << "the bowl is in the asset";
     AssetOptions shell = coarse_options(2000);
     shell.shell = true;
     const Asset shells = make_asset(remesh_source(mesh), shell);

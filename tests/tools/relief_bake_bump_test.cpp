@@ -440,7 +440,8 @@ TEST(BakeRefusal, ExplainsAndLeavesNoFiles) {
           "flat.png, out/n.<UDIM>.png: <UDIM> must be in both names or in none"},
          {"relief-bake bump flat.png", 2, "OUT is missing (see relief-bake bump --help)"},
          {"relief-bake", 2,
-          "a command is missing: bump or mesh or convert or check or heights or pack or textures "
+          "a command is missing: bump or mesh or merge or convert or check or heights or pack or "
+          "textures "
           "(see "
           "relief-bake --help)"}});
 }

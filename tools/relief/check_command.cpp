@@ -201,8 +201,7 @@ class Checker {
         std::vector<ImageTask> list;
         for (auto& [identity, task] : tasks) {
             std::ranges::sort(task.roles);
-            const auto rest = std::ranges::unique(task.roles);
-            task.roles.erase(rest.begin(), rest.end());
+            task.roles.erase(std::unique(task.roles.begin(), task.roles.end()), task.roles.end());
             if (task.items.empty()) {
                 task.items.push_back(items.size());
                 items.emplace_back().file = task.file;

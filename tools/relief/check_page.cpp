@@ -124,8 +124,7 @@ std::string rules_table(const CheckResults& results) {
         for (const CheckFinding& finding : item.findings)
             ids.push_back(finding.rule->id);
         std::ranges::sort(ids);
-        const auto rest = std::ranges::unique(ids);
-        ids.erase(rest.begin(), rest.end());
+        ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
         for (const std::string_view id : ids)
             ++files[id];
     }
