@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "driver.h"
 #include "farm.h"
 #include "files.h"
 #include "json_cursor.h"
@@ -15,36 +16,16 @@ namespace {
 using relief::detail::JsonCursor;
 
 constexpr int max_shards = 100'000;
-constexpr std::size_t max_depth = 32;
-
-/// Parses the file. JsonCursor::parse(), which refuses repeated keys, needs a time that grows with
-/// the square of the number of jobs: 20 s for 100,000.
-JsonCursor parse(const std::string& text) {
-    relief::detail::require_json_depth(text, max_depth);
-    try {
-        return JsonCursor(nlohmann::json::parse(text), JsonCursor::Wording::requirement);
-    } catch (const nlohmann::json::exception& error) {
-        throw InvalidInput("is not valid JSON: " + relief::detail::json_problem(error));
-    }
-}
-
-/// Returns a tool of relief that is installed beside this program, else its name.
-std::string tool_path(const std::string& name) {
-    std::error_code error;
-    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-    const std::filesystem::path beside = self.parent_path() / name;
-    return !error && std::filesystem::exists(beside, error) ? beside.string() : name;
-}
 
 /// The program and the arguments of a command of relief: {"bake", "mesh", ...}.
 std::vector<std::string> program_of(const std::vector<std::string>& words) {
     std::vector<std::string> program;
     if (words.front() == "bake" || words.front() == "mesh" || words.front() == "view" ||
         words.front() == "accuracy") {
-        program.push_back(tool_path("relief-" + words.front()));
+        program.push_back(sibling_program("relief-" + words.front()).string());
         program.insert(program.end(), words.begin() + 1, words.end());
     } else {
-        program.push_back(tool_path("relief"));
+        program.push_back(sibling_program("relief").string());
         program.insert(program.end(), words.begin(), words.end());
     }
     return program;
@@ -130,7 +111,7 @@ FarmJobs read_farm_jobs(const std::filesystem::path& file, std::optional<std::si
     std::vector<FarmTask> merges;
     const std::string text = relief::detail::read_file(file);
     about(file, [&] {
-        const JsonCursor root = parse(text);
+        const JsonCursor root = JsonCursor::parse(text);
         if (root.is_object() && root.find("assets")) {
             const std::size_t assets = root.at("assets").elements().size();
             const std::vector<std::string> words = {

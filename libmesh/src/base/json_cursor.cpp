@@ -33,18 +33,36 @@ std::string escaped(std::string_view key) {
     return result;
 }
 
-/// Throws if a key occurs twice in an object; the parser alone would keep the last value.
-class DuplicateKeys {
+/// Throws if a key occurs twice in an object; the parser alone would keep the last value. This is a
+/// pass of its own, because the parser searches all of an array after each object in it if it has a
+/// callback.
+class DuplicateKeys : public nlohmann::json_sax<Json> {
   public:
-    bool operator()(int, Json::parse_event_t event, Json& value) {
-        if (event == Json::parse_event_t::object_start) open_.emplace_back();
-        if (event == Json::parse_event_t::object_end) open_.pop_back();
-        if (event == Json::parse_event_t::key &&
-            !open_.back().insert(value.get<std::string>()).second) {
-            throw InvalidInput(
-                fmt::format("the key '{}' occurs twice in one object", value.get<std::string>()));
-        }
+    bool start_object(std::size_t) override {
+        open_.emplace_back();
         return true;
+    }
+    bool key(std::string& key) override {
+        if (!open_.back().insert(key).second)
+            throw InvalidInput(fmt::format("the key '{}' occurs twice in one object", key));
+        return true;
+    }
+    bool end_object() override {
+        open_.pop_back();
+        return true;
+    }
+    bool start_array(std::size_t) override { return true; }
+    bool end_array() override { return true; }
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(Json::number_integer_t) override { return true; }
+    bool number_unsigned(Json::number_unsigned_t) override { return true; }
+    bool number_float(Json::number_float_t, const std::string&) override { return true; }
+    bool string(std::string&) override { return true; }
+    bool binary(Json::binary_t&) override { return true; }
+    /// The parser reports the error.
+    bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception&) override {
+        return false;
     }
 
   private:
@@ -94,9 +112,9 @@ JsonCursor JsonCursor::parse(std::string_view text) {
     constexpr std::size_t max_depth = 1024;
     require_json_depth(text, max_depth);
     DuplicateKeys duplicates;
+    Json::sax_parse(text.begin(), text.end(), &duplicates);
     try {
-        return JsonCursor(Json::parse(text.begin(), text.end(), std::ref(duplicates)),
-                          Wording::requirement);
+        return JsonCursor(Json::parse(text.begin(), text.end()), Wording::requirement);
     } catch (const Json::exception& error) {
         throw InvalidInput(fmt::format("is not valid JSON: {}", json_problem(error)));
     }
