@@ -222,6 +222,7 @@ class Slurm {
   public:
     explicit Slurm(const Workplace& workplace) : workplace_(workplace) {
         const std::string folder = (workplace / "slurm").string();
+        std::filesystem::create_directories(workplace / "slurm/state");
         // Ports of this process, so that two tests do not meet.
         const int port = 20000 + 3 * (static_cast<int>(::getpid()) % 5000);
         workplace.write("slurm/slurm.conf", fmt::format(R"(ClusterName=relief
