@@ -59,7 +59,7 @@ class CountingIterator {
 class KeyLines : public nlohmann::json_sax<Json> {
   public:
     KeyLines(const std::string& text, const char** reached)
-        : begin_(text.data()), reached_(reached) {}
+        : counted_(text.data()), reached_(reached) {}
 
     [[nodiscard]] std::size_t line_of(const std::string& path) const {
         const auto found = lines_.find(path);
@@ -110,8 +110,9 @@ class KeyLines : public nlohmann::json_sax<Json> {
         return result;
     }
     bool note() {
-        const auto line = 1 + std::count(begin_, *reached_, '\n');
-        return lines_.try_emplace(path(), static_cast<std::size_t>(line)).second;
+        line_ += static_cast<std::size_t>(std::count(counted_, *reached_, '\n'));
+        counted_ = *reached_;
+        return lines_.try_emplace(path(), line_).second;
     }
     bool value() {
         if (!levels_.empty() && levels_.back().is_list) ++levels_.back().index;
@@ -127,7 +128,8 @@ class KeyLines : public nlohmann::json_sax<Json> {
         return value();
     }
 
-    const char* begin_;
+    std::size_t line_ = 1;
+    const char* counted_;  ///< The line ends before it are counted.
     const char** reached_;
     std::vector<Level> levels_;
     std::map<std::string, std::size_t> lines_;
