@@ -445,7 +445,7 @@ void write_planted_model(const fs::path& folder, const std::string& name, std::s
     }
     if (asset.normals)
         material["normalTexture"] = texture(*asset.normals, name + "_normal.png", asset.metadata);
-    root["materials"] = {material};
+    root["materials"] = json::array({material});
     buffer.write(folder, name, root);
     std::ofstream(folder / (name + ".gltf")) << root.dump(1);
     if (asset.damage) asset.damage(folder, name);
