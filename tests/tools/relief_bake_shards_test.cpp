@@ -124,7 +124,7 @@ TEST(BakeMerge, RefusesMixedRepeatedMissingAndDamagedParts) {
     ASSERT_EQ(workplace.run("rm out/*").exit_code, 0);
     expect_refusals(
         workplace, "relief-bake", "map.png",
-        {{"merge", 2, "no part is given"},
+        {{"merge", 2, "PART: is missing"},
          {"merge parts/1 parts/2", 1, "parts/1: 1 of 3 parts is missing: 3 (bake them with"},
          {"merge parts/3", 1, "parts/3: 2 of 3 parts are missing: 1, 2"},
          {"merge parts/3 parts/2 parts/3 parts/1", 1, "parts/3: is part 3 of 3, as parts/3 is"},
@@ -134,8 +134,8 @@ TEST(BakeMerge, RefusesMixedRepeatedMissingAndDamagedParts) {
           "parts/four: belongs to another bake than parts/1: one is of 3 parts, one of 4"},
          {"merge parts/1 parts/changed parts/3", 1,
           "parts/changed: belongs to another bake than parts/1: the contents of high.obj differ"},
-         {"merge parts/1 parts/short parts/3", 1, "parts/short: is damaged: it has no end"},
-         {"merge parts/1 parts/text parts/3", 1, "parts/text: is no part of a bake"},
+         {"merge parts/1 parts/short parts/3", 1, "parts/short: is damaged: its end is missing"},
+         {"merge parts/1 parts/text parts/3", 1, "parts/text: is not a part of a bake"},
          {"merge parts/1 parts/damaged parts/3", 1, "parts/damaged: is damaged: the hash of rows"},
          {"merge parts/1 parts/none parts/3", 1, "parts/none: "},
          {"merge parts/1 parts/2 parts/3 -o parts/1", 2, "parts/1: "}});

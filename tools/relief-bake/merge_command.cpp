@@ -31,7 +31,7 @@ void remove_parts(const CLI::App& app, const std::vector<std::unique_ptr<PartFil
 
 ExitCode run(const CLI::App& app, const MergeOptions& options) {
     if (options.parts.empty())
-        throw UsageError("no part is given", "give the files that relief-bake mesh --shard wrote");
+        throw UsageError("PART: is missing", "give the files that relief-bake mesh --shard wrote");
     set_thread_limit(options.general.threads);
     std::vector<std::unique_ptr<PartFile>> parts;
     for (const std::filesystem::path& file : options.parts)

@@ -97,7 +97,7 @@ struct WrittenLayer {
     bool has_opacity = false;  ///< In alpha; only with colors.
 };
 
-/// What the models tell about the layers of all maps.
+/// The facts about the layers of all maps that follow from the models.
 struct BakeFacts {
     LayerBounds bounds;
     std::vector<SurfaceId> ids;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <set>
 
+#include "common/content_hash.h"
 #include "common/file_jobs.h"
 #include "common/options.h"
 #include "file_replacement.h"
@@ -24,15 +25,8 @@ std::vector<std::pair<std::string, std::string>> hashes_of(
     for (const std::filesystem::path& file : files)
         names.insert(file.is_absolute() ? file.lexically_proximate(here).string() : file.string());
     std::vector<std::pair<std::string, std::string>> hashes;
-    for (const std::string& name : names) {
-        std::string hash = "missing";  // Searched and not found.
-        if (std::filesystem::is_regular_file(name)) {
-            ContentHash content;
-            content.add_file(name);
-            hash = content.text();
-        }
-        hashes.emplace_back(name, hash);
-    }
+    for (const std::string& name : names)
+        hashes.emplace_back(name, file_hash(name));
     return hashes;
 }
 
@@ -73,7 +67,7 @@ class MapReader {
         std::ranges::sort(shards_, {}, [](const BakeShard& shard) { return shard.rows.first; });
         const std::size_t texels = width_ * static_cast<std::size_t>(part_chunk_rows);
         states_.resize(texels);
-        for (const PartLayer& layer : part_layers) {
+        for (const RowLayer& layer : row_layers()) {
             values_.emplace_back(layer.is_requested(layers) ? layer.channels * texels : 0);
         }
     }
@@ -101,8 +95,8 @@ class MapReader {
         std::copy_n(&states_[from], width_, &rows.states[to]);
         for (std::size_t i = 0; i < values_.size(); ++i) {
             if (values_[i].empty()) continue;
-            const std::size_t channels = part_layers[i].channels;
-            const std::span<float> target = rows.*part_layers[i].values;
+            const std::size_t channels = row_layers()[i].channels;
+            const std::span<float> target = rows.*row_layers()[i].values;
             for (std::size_t x = 0; x < width_; ++x) {
                 if (states_[from + x] != TexelState::baked) continue;
                 std::copy_n(&values_[i][channels * (from + x)], channels,
@@ -122,8 +116,8 @@ class MapReader {
         chunk.states = std::span(states_).first(texels);
         for (std::size_t i = 0; i < values_.size(); ++i) {
             if (values_[i].empty()) continue;
-            chunk.*part_layers[i].values =
-                std::span(values_[i]).first(part_layers[i].channels * texels);
+            chunk.*row_layers()[i].values =
+                std::span(values_[i]).first(row_layers()[i].channels * texels);
         }
         // Chunks hold only baked texels.
         std::ranges::fill(chunk.ids, -1.0F);
@@ -137,7 +131,7 @@ class MapReader {
     std::size_t source_ = 0;
     int chunk_first_ = 0, chunk_last_ = 0;
     std::vector<TexelState> states_;
-    std::vector<std::vector<float>> values_;  ///< As part_layers; empty if not requested.
+    std::vector<std::vector<float>> values_;  ///< As row_layers(); empty if not requested.
 };
 
 /// The maps with their names, which must be different files.

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "common/content_hash.h"
 #include "json_cursor.h"
 
 namespace relief::tools {
@@ -136,7 +137,7 @@ Json report_json(const Report& report) {
 }
 
 Finding finding_in(const JsonCursor& json) {
-    constexpr std::size_t max_first = 8;
+    constexpr std::size_t max_first = 8;  // As in Finding.
     Finding finding{text_in(json.at("kind")),
                     text_in(json.at("element")),
                     text_in(json.at("outcome")),
@@ -146,7 +147,7 @@ Finding finding_in(const JsonCursor& json) {
         finding.first.push_back(index.unsigned_number());
     if (finding.first.size() > max_first || finding.first.size() > finding.count ||
         !std::ranges::is_sorted(finding.first))
-        json.fail("is no finding");
+        json.fail("is not a finding");
     return finding;
 }
 
@@ -407,7 +408,7 @@ MapPlan plan_in(const JsonCursor& json) {
     plan.material_in_files = text_in(json.at("file_name"));
     if (plan.material_in_files.find('/') != std::string::npos ||
         plan.material_in_files.find('\0') != std::string::npos)
-        json.fail("is no part of a file name");
+        json.fail("cannot be in a file name");
     if (const auto material = json.find("material")) plan.material = text_in(*material);
     if (const auto udim = json.find("udim")) plan.udim = udim->whole_number(1001, 9999);
     return plan;
@@ -461,25 +462,6 @@ Part part_in(const JsonCursor& json) {
 
 }  // namespace
 
-void ContentHash::add_text(std::string_view text) {
-    add(bytes_of(text.size()));
-    add(text);
-}
-
-void ContentHash::add_file(const std::filesystem::path& file) {
-    constexpr std::size_t block = 1'000'000;
-    const relief::detail::RandomAccessFile opened(file);
-    for (std::uint64_t at = 0; at < opened.size(); at += block) {
-        const auto size =
-            static_cast<std::size_t>(std::min<std::uint64_t>(block, opened.size() - at));
-        add(read_text(opened, at, size));
-    }
-}
-
-std::string ContentHash::text() const {
-    return fmt::format("{:016x}", hash_);
-}
-
 std::string PartJob::hash() const {
     ContentHash hash;
     hash.add_text(version);
@@ -516,7 +498,7 @@ void PartWriter::write(const BakedRows& rows) {
         std::string chunk;
         for (const TexelState state : rows.states.subspan(begin, texels))
             chunk.push_back(static_cast<char>(state));
-        for (const auto& [layer, channels, is_requested] : part_layers) {
+        for (const auto& [layer, channels, is_requested] : row_layers()) {
             const std::span<const float> values = rows.*layer;
             if (values.empty()) continue;
             for (std::size_t i = begin; i < begin + texels; ++i) {
@@ -548,14 +530,14 @@ void PartWriter::finish(const Part& part) {
 PartFile::PartFile(const std::filesystem::path& file) : file_(file) {
     if (file_.size() < part_magic.size() + trailer_bytes ||
         read_text(file_, 0, part_magic.size()) != part_magic)
-        throw failure(file, "is no part of a bake", "relief-bake mesh --shard writes parts");
+        throw failure(file, "is not a part of a bake", "relief-bake mesh --shard writes parts");
     const std::string trailer = read_text(file_, file_.size() - trailer_bytes, trailer_bytes);
     const std::uint64_t offset = number_of(std::string_view(trailer).substr(0, 8));
     const std::uint64_t size = number_of(std::string_view(trailer).substr(8, 8));
     const std::uint64_t end = file_.size() - trailer_bytes;
     if (!trailer.ends_with(part_end) || offset < part_magic.size() || offset > end ||
         size != end - offset || size > max_json_bytes)
-        refuse(file, "is damaged: it has no end");
+        refuse(file, "is damaged: its end is missing");
     const std::string json = read_text(file_, offset, static_cast<std::size_t>(size));
     ContentHash hash;
     hash.add(json);
@@ -575,7 +557,7 @@ void PartFile::read(const BakedRows& rows, std::uint64_t& offset, std::size_t id
     const std::string head = read_text(file_, offset, head_bytes);
     const std::uint64_t size = number_of(std::string_view(head).substr(0, 8));
     std::size_t values = 0;  // Of a texel.
-    for (const auto& [layer, channels, is_requested] : part_layers)
+    for (const auto& [layer, channels, is_requested] : row_layers())
         values += (rows.*layer).empty() ? 0 : channels;
     const std::string name =
         fmt::format("rows {} to {}", rows.first_row, rows.first_row + rows.row_count);
@@ -597,7 +579,7 @@ void PartFile::read(const BakedRows& rows, std::uint64_t& offset, std::size_t id
     if (size != texels + sizeof(float) * values * baked)
         refuse(path(), fmt::format("is damaged: the size of {} is impossible", name));
     const char* from = chunk.data() + texels;
-    for (const auto& [layer, channels, is_requested] : part_layers) {
+    for (const auto& [layer, channels, is_requested] : row_layers()) {
         const std::span<float> target = rows.*layer;
         if (target.empty()) continue;
         for (std::size_t i = 0; i < texels; ++i) {

@@ -5,10 +5,10 @@
 ///
 /// A file has "relief part 1\n", the texels, a JSON object, and 32 bytes: the offset, the length
 /// and the FNV-1a hash of the JSON, and "end part". Numbers are little-endian. The texels are
-/// chunks of at most 64 rows: a byte for the state of each texel, then for each layer the floats of
-/// the baked texels. Each chunk follows its length and its hash. The JSON states the rows of the
-/// chunks. Hashes find damaged files; every number is checked as well, so that no file does harm.
-/// Tests: tests/tools/relief_bake_shards_test.cpp.
+/// chunks of at most 64 rows: a byte for the state of each texel, then for each layer
+/// (row_layers()) the floats of the baked texels. Each chunk follows its length and its hash. The
+/// JSON states the rows of the chunks. Hashes find damaged files; every number is checked as well,
+/// so that no file does harm. Tests: tests/tools/relief_bake_shards_test.cpp.
 #pragma once
 
 #include <array>
@@ -29,27 +29,7 @@
 
 namespace relief::tools {
 
-/// 64-bit FNV-1a, for damaged and changed files; no protection against forged ones.
-class ContentHash {
-  public:
-    void add(std::string_view bytes) {
-        for (const char byte : bytes)
-            hash_ = (hash_ ^ static_cast<unsigned char>(byte)) * 0x100000001B3ULL;
-    }
-    /// Adds a text and its end, so that "a", "bc" and "ab", "c" differ.
-    void add_text(std::string_view text);
-    /// \throws FileError
-    void add_file(const std::filesystem::path& file);
-
-    [[nodiscard]] std::uint64_t value() const { return hash_; }
-    /// 16 hexadecimal digits.
-    [[nodiscard]] std::string text() const;
-
-  private:
-    std::uint64_t hash_ = 0xCBF29CE484222325ULL;
-};
-
-/// What all parts of a bake have in common, and distinguishes them from those of others.
+/// The facts that all parts of a bake share, and parts of other bakes do not.
 struct PartJob {
     std::string version;                 ///< Of the program.
     std::size_t count = 0;               ///< Of shards.
@@ -81,39 +61,14 @@ struct Part {
     double milliseconds = 0.0;  ///< Of the bake.
 };
 
-/// A layer of a chunk.
-struct PartLayer {
-    std::span<float> BakedRows::*values;
-    std::size_t channels;
-    bool (*is_requested)(const BakeLayers& layers);
-};
-
-/// The layers that a chunk may hold, in its order.
-inline constexpr std::array part_layers = {
-    PartLayer{&BakedRows::normals, 3, [](const BakeLayers& l) { return l.normals; }},
-    PartLayer{&BakedRows::heights, 1, [](const BakeLayers& l) { return l.heights; }},
-    PartLayer{&BakedRows::occlusion, 1,
-              [](const BakeLayers& l) { return l.occlusion.has_value(); }},
-    PartLayer{&BakedRows::curvature, 1, [](const BakeLayers& l) { return l.curvature; }},
-    PartLayer{&BakedRows::positions, 3, [](const BakeLayers& l) { return l.positions; }},
-    PartLayer{&BakedRows::colors, 3, [](const BakeLayers& l) { return l.colors; }},
-    PartLayer{&BakedRows::opacity, 1, [](const BakeLayers& l) { return l.opacity; }},
-    PartLayer{&BakedRows::surface, 3, [](const BakeLayers& l) { return l.surface; }},
-    PartLayer{&BakedRows::emission, 3, [](const BakeLayers& l) { return l.emission; }},
-    PartLayer{&BakedRows::bent_normals, 3,
-              [](const BakeLayers& l) { return l.bent_normals.has_value(); }},
-    PartLayer{&BakedRows::thickness, 1,
-              [](const BakeLayers& l) { return l.thickness.has_value(); }},
-    PartLayer{&BakedRows::ids, 1, [](const BakeLayers& l) { return l.ids; }}};
-
 /// Writes a part. Without finish(), no file is left.
 class PartWriter {
   public:
     /// \throws FileError
     explicit PartWriter(const std::filesystem::path& file);
 
-    /// Begins the rows of a map, and returns their offset.
-    std::uint64_t offset() const { return offset_; }
+    /// Returns the offset of the next rows.
+    [[nodiscard]] std::uint64_t offset() const { return offset_; }
 
     /// Writes rows. \throws FileError
     void write(const BakedRows& rows);
@@ -132,7 +87,8 @@ class PartWriter {
 /// A part that is opened for reading.
 class PartFile {
   public:
-    /// Reads all but the texels. \throws FileError if the file is no part, damaged, or not possible
+    /// Reads all but the texels. \throws FileError if the file is not a part, or is damaged or
+    /// inconsistent
     explicit PartFile(const std::filesystem::path& file);
 
     [[nodiscard]] const Part& part() const { return part_; }
@@ -142,7 +98,7 @@ class PartFile {
     /// \param rows    of the chunk
     /// \param offset  becomes that of the next chunk
     /// \param ids     the number of ids
-    /// \throws FileError if it is damaged, or not possible
+    /// \throws FileError if it is damaged or inconsistent
     void read(const BakedRows& rows, std::uint64_t& offset, std::size_t ids) const;
 
   private:

@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "common/command.h"
+#include "common/content_hash.h"
 #include "file_replacement.h"
 #include "files.h"
-#include "make_cache.h"
 #include "relief/mesh/execution.h"
 
 namespace relief::tools {

@@ -2,26 +2,18 @@
 // Tests: tests/check/check_fix_test.cpp.
 #include "check_fix.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <set>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "common/command.h"
 #include "common/options.h"
 #include "driver.h"
-
-extern char** environ;
+#include "run_program.h"
 
 namespace relief::tools {
 namespace {
@@ -40,47 +32,15 @@ std::vector<std::string> words_of(std::string_view remedy, const fs::path& input
     return words;
 }
 
-/// Returns everything that can be read from a pipe.
-std::string text_of_pipe(int descriptor) {
-    std::string text;
-    char part[4096];
-    while (true) {
-        const ssize_t count = ::read(descriptor, part, sizeof part);
-        if (count < 0 && errno == EINTR) continue;
-        if (count <= 0) return text;
-        text.append(part, static_cast<std::size_t>(count));
-    }
-}
-
 /// Runs a tool of relief. \return its first message, or a reason; empty if it succeeded
-std::string run(const std::vector<std::string>& words) {
-    int ends[2];
-    if (::pipe2(ends, O_CLOEXEC) != 0) return std::strerror(errno);
-    posix_spawn_file_actions_t actions;
-    ::posix_spawn_file_actions_init(&actions);
-    ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    ::posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
-    std::vector<std::string> own = words;
-    std::vector<char*> arguments;
-    for (std::string& word : own)
-        arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    const fs::path program = sibling_program(words.front());
-    pid_t process = 0;
-    const int failure =
-        ::posix_spawnp(&process, program.c_str(), &actions, nullptr, arguments.data(), environ);
-    ::posix_spawn_file_actions_destroy(&actions);
-    ::close(ends[1]);
-    const std::string message = failure == 0 ? text_of_pipe(ends[0]) : "";
-    ::close(ends[0]);
-    if (failure != 0) return fmt::format("{}: {}", words.front(), std::strerror(failure));
-    int status = 0;
-    while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
-    }
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return "";
-    const std::string line = message.substr(0, message.find('\n'));
-    return line.empty() ? fmt::format("{} failed", words.front()) : line;
+std::string run(std::vector<std::string> words) {
+    const std::string tool = words.front();
+    words.front() = sibling_program(tool).string();
+    const ProgramOutput output = run_program(words, CapturedStream::errors);
+    if (output.exit_code == 0) return "";
+    if (output.exit_code == 127) return fmt::format("{}: {}", tool, output.text);
+    const std::string line = output.text.substr(0, output.text.find('\n'));
+    return line.empty() ? tool + " failed" : line;
 }
 
 /// Returns the remedies of a file, repairs of triangles first: they change normals and tangents.

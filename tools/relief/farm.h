@@ -48,17 +48,6 @@ std::string shell_word(const std::string& word);
 /// Returns a command as a line of a shell.
 std::string shell_line(const std::vector<std::string>& words);
 
-/// The result of a program.
-struct ProgramOutput {
-    int exit_code = 0;  ///< 127: it cannot be run; 128 + the signal that ended it.
-    std::string text;   ///< Standard output.
-    double seconds = 0.0;
-    std::uint64_t peak_bytes = 0;
-};
-
-/// Runs a program without a shell.
-ProgramOutput run_program(const std::vector<std::string>& words);
-
 /// The folder of a farm.
 class FarmFolder {
   public:

@@ -14,12 +14,13 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "common/content_hash.h"
 #include "common/options.h"
 #include "common/summary.h"
 #include "driver.h"
 #include "farm.h"
 #include "files.h"
-#include "make_cache.h"
+#include "run_program.h"
 
 namespace relief::tools {
 

@@ -1,25 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The folder of a farm, and the engines that run its scripts: GNU parallel and Slurm.
 // Tests: tests/tools/farm_test.cpp.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <thread>
 
 #include "common/command.h"
 #include "farm.h"
-
-extern char** environ;
+#include "run_program.h"
 
 namespace relief::tools {
 namespace {
@@ -73,44 +64,6 @@ std::string array_script(const std::filesystem::path& list) {
 }
 
 }  // namespace
-
-ProgramOutput run_program(const std::vector<std::string>& words) {
-    ProgramOutput output;
-    std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0) return {127, std::strerror(errno), 0.0, 0};
-    std::vector<char*> arguments;
-    for (const std::string& word : words)
-        arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
-    posix_spawn_file_actions_t actions{};
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
-    const auto start = std::chrono::steady_clock::now();
-    ::pid_t child = 0;
-    const int error =
-        ::posix_spawnp(&child, arguments.front(), &actions, nullptr, arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    ::close(ends[1]);
-    std::array<char, 4096> block{};
-    for (::ssize_t size = 0; error == 0;) {
-        size = ::read(ends[0], block.data(), block.size());
-        if (size < 0 && errno == EINTR) continue;
-        if (size <= 0) break;
-        output.text.append(block.data(), static_cast<std::size_t>(size));
-    }
-    ::close(ends[0]);
-    if (error != 0) return {127, std::strerror(error), 0.0, 0};
-    int status = 0;
-    ::rusage use{};
-    while (::wait4(child, &status, 0, &use) < 0 && errno == EINTR) {
-    }
-    output.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    output.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    output.peak_bytes = static_cast<std::uint64_t>(use.ru_maxrss) * 1024;
-    return output;
-}
 
 FarmFolder::FarmFolder(std::filesystem::path folder, const FarmJobs& jobs)
     : folder_(std::filesystem::absolute(folder)), jobs_(jobs) {}

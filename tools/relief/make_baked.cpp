@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "common/command.h"
+#include "common/content_hash.h"
 #include "common/summary.h"
-#include "make_cache.h"
 #include "make_parts.h"
 #include "make_stages.h"
 #include "mesh_maps.h"

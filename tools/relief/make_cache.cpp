@@ -2,27 +2,11 @@
 // Tests: tests/make/make_cache_test.cpp.
 #include "make_cache.h"
 
-#include <fmt/format.h>
-
-#include <cstdint>
-
 #include "common/command.h"
+#include "common/content_hash.h"
 #include "files.h"
 
 namespace relief::tools {
-
-std::string file_hash(const std::filesystem::path& file) {
-    try {
-        const relief::detail::FileContents contents(file);
-        std::uint64_t hash = 0xCBF29CE484222325ULL;
-        for (const char byte : contents.text())
-            hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001B3ULL;
-        return fmt::format("{:016x}", hash);
-    } catch (const FileError&) {
-        return "missing";
-    }
-}
-
 namespace {
 
 Json hashes_of(const std::vector<std::filesystem::path>& files) {

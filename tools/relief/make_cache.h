@@ -13,11 +13,8 @@
 
 namespace relief::tools {
 
-/// Returns the 64-bit FNV-1a hash of a file's bytes; "missing" for a file that cannot be read.
-std::string file_hash(const std::filesystem::path& file);
-
 /// The file relief-make.json of an output folder: for each asset the options
-/// with the version, and the 64-bit FNV-1a hashes of the files that were read
+/// with the version, and the hashes (content_hash.h) of the files that were read
 /// and written.
 class MakeCache {
   public:

@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "common/command.h"
+#include "common/content_hash.h"
 #include "common/model_file.h"
 #include "files.h"
 #include "make_baked.h"
-#include "make_cache.h"
 #include "make_options.h"
 #include "make_parts.h"
 #include "make_stages.h"

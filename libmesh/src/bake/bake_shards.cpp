@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "bake/layers.h"
 #include "bake/map_rows.h"
 #include "progress_stage.h"
 
@@ -28,6 +30,15 @@ void keep_first(std::vector<MissedTexel>& missed) {
 }
 
 }  // namespace
+
+std::span<const RowLayer> row_layers() {
+    static constexpr auto layers = [] {
+        std::array<RowLayer, baked_layers.size()> all{};
+        std::copy(baked_layers.begin(), baked_layers.end(), all.begin());
+        return all;
+    }();
+    return layers;
+}
 
 BakeCounts& BakeCounts::operator+=(const BakeCounts& other) {
     samples += other.samples;

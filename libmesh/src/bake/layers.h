@@ -15,6 +15,7 @@
 
 #include "bake/high_surface.h"
 #include "relief/mesh/bake.h"
+#include "relief/mesh/bake_shards.h"
 
 namespace relief::detail {
 
@@ -27,39 +28,40 @@ enum class TexelMean {
     majority,   ///< The most frequent value; of equally frequent ones, the smallest.
 };
 
-/// A layer that rows of a bake may hold.
-struct BakedLayer {
-    std::span<float> BakedRows::*values;
-    std::size_t channels;
+/// A layer with the mean that its texels have.
+struct BakedLayer : RowLayer {
     TexelMean mean;
-    bool (*is_requested)(const BakeLayers& layers);
 };
 
 /// All layers, in the order in which they are stored and padded.
 inline constexpr std::array baked_layers = {
-    BakedLayer{&BakedRows::normals, 3, TexelMean::direction,
-               [](const BakeLayers& l) { return l.normals; }},
-    BakedLayer{&BakedRows::heights, 1, TexelMean::number,
-               [](const BakeLayers& l) { return l.heights; }},
-    BakedLayer{&BakedRows::occlusion, 1, TexelMean::number,
-               [](const BakeLayers& l) { return l.occlusion.has_value(); }},
-    BakedLayer{&BakedRows::curvature, 1, TexelMean::number,
-               [](const BakeLayers& l) { return l.curvature; }},
-    BakedLayer{&BakedRows::positions, 3, TexelMean::number,
-               [](const BakeLayers& l) { return l.positions; }},
-    BakedLayer{&BakedRows::colors, 3, TexelMean::number,
-               [](const BakeLayers& l) { return l.colors; }},
-    BakedLayer{&BakedRows::opacity, 1, TexelMean::number,
-               [](const BakeLayers& l) { return l.opacity; }},
-    BakedLayer{&BakedRows::surface, 3, TexelMean::number,
-               [](const BakeLayers& l) { return l.surface; }},
-    BakedLayer{&BakedRows::emission, 3, TexelMean::number,
-               [](const BakeLayers& l) { return l.emission; }},
-    BakedLayer{&BakedRows::bent_normals, 3, TexelMean::direction,
-               [](const BakeLayers& l) { return l.bent_normals.has_value(); }},
-    BakedLayer{&BakedRows::thickness, 1, TexelMean::number,
-               [](const BakeLayers& l) { return l.thickness.has_value(); }},
-    BakedLayer{&BakedRows::ids, 1, TexelMean::majority, [](const BakeLayers& l) { return l.ids; }},
+    BakedLayer{{&BakedRows::normals, 3, [](const BakeLayers& l) { return l.normals; }},
+               TexelMean::direction},
+    BakedLayer{{&BakedRows::heights, 1, [](const BakeLayers& l) { return l.heights; }},
+               TexelMean::number},
+    BakedLayer{
+        {&BakedRows::occlusion, 1, [](const BakeLayers& l) { return l.occlusion.has_value(); }},
+        TexelMean::number},
+    BakedLayer{{&BakedRows::curvature, 1, [](const BakeLayers& l) { return l.curvature; }},
+               TexelMean::number},
+    BakedLayer{{&BakedRows::positions, 3, [](const BakeLayers& l) { return l.positions; }},
+               TexelMean::number},
+    BakedLayer{{&BakedRows::colors, 3, [](const BakeLayers& l) { return l.colors; }},
+               TexelMean::number},
+    BakedLayer{{&BakedRows::opacity, 1, [](const BakeLayers& l) { return l.opacity; }},
+               TexelMean::number},
+    BakedLayer{{&BakedRows::surface, 3, [](const BakeLayers& l) { return l.surface; }},
+               TexelMean::number},
+    BakedLayer{{&BakedRows::emission, 3, [](const BakeLayers& l) { return l.emission; }},
+               TexelMean::number},
+    BakedLayer{{&BakedRows::bent_normals, 3,
+                [](const BakeLayers& l) { return l.bent_normals.has_value(); }},
+               TexelMean::direction},
+    BakedLayer{
+        {&BakedRows::thickness, 1, [](const BakeLayers& l) { return l.thickness.has_value(); }},
+        TexelMean::number},
+    BakedLayer{{&BakedRows::ids, 1, [](const BakeLayers& l) { return l.ids; }},
+               TexelMean::majority},
 };
 
 /// \throws InvalidInput if the number of rays or the distance of a layer is out of range, or if

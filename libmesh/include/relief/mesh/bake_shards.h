@@ -56,10 +56,21 @@ struct BakeCounts {
     BakeCounts& operator+=(const BakeCounts& other);
 };
 
+/// A layer that rows may hold.
+struct RowLayer {
+    std::span<float> BakedRows::*values;
+    std::size_t channels;
+    bool (*is_requested)(const BakeLayers& layers);
+};
+
+/// Returns all layers, for programs that store rows and read them again.
+std::span<const RowLayer> row_layers();
+
 /// Everything that a bake of some rows finds, besides the texels.
 struct BakeShard {
     BakeRowRange rows;
-    /// Of the bands of 64 rows of samples that begin in these rows, so that each band counts once.
+    /// The coverage in the bands of 64 rows of samples that begin in these rows: each band counts
+    /// once.
     Coverage coverage{};
     BakeCounts counts{};
     Report triangles{};  ///< Findings about triangles; only with row 0.
