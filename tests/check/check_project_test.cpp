@@ -88,6 +88,20 @@ TEST_F(Project, LimitsBudgets) {
     EXPECT_THAT(rules(R"({"texel_density": [20, 40]})"), Not(HasSubstr("budget/")));
 }
 
+// "image 1" is also the place of an embedded image.
+TEST_F(Project, LimitsAnImageFileOnceWhateverItsName) {
+    json model = json::parse(workplace.read("in/rock.gltf"));
+    std::filesystem::rename(workplace / "in/rock_color.png", workplace / "in/image 1.png");
+    for (json& image : model["images"]) {
+        if (image["uri"] == "rock_color.png") image["uri"] = "image%201.png";
+    }
+    workplace.write("in/rock.gltf", model.dump());
+    const std::string out =
+        run(R"({"rules": {"mesh/*": "off"}, "budgets": [{"map_size": 32}]})").out;
+    EXPECT_THAT(out, HasSubstr("in/image 1.png: error: has 64 x 64 texels of at most 32"));
+    EXPECT_THAT(out, Not(HasSubstr("in/rock.gltf: error: image 1")));
+}
+
 TEST_F(Project, MeasuresTexelDensityOfTiledTextures) {
     json model = json::parse(workplace.read("in/rock.gltf"));
     model["extensionsUsed"] = {"KHR_texture_transform"};

@@ -211,7 +211,7 @@ TEST_F(CheckCommand, RunsInAWorkflow) {
     EXPECT_THAT(text.out, HasSubstr("in/a.gltf: warning: "));
 }
 
-// What relief itself makes has no defects.
+// The outputs of relief have no defects.
 TEST_F(CheckCommand, AcceptsTheAssetsThatReliefMakes) {
     for (const char* line :
          {"relief make data/vase.obj in/vase.gltf --triangles 300 --size 64 --padding 2 "

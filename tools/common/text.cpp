@@ -59,10 +59,13 @@ std::string file_and_size(const std::filesystem::path& file) {
 }
 
 std::string extension_of(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    for (char& letter : extension)
+    return in_lower_case(file.extension().string());
+}
+
+std::string in_lower_case(std::string text) {
+    for (char& letter : text)
         letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    return extension;
+    return text;
 }
 
 bool has_image_extension(const std::filesystem::path& file) {

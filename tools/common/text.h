@@ -37,6 +37,9 @@ std::string file_and_size(const std::filesystem::path& file);
 /// Returns the extension in lower case with its dot.
 std::string extension_of(const std::filesystem::path& file);
 
+/// Returns a text with the letters A to Z in lower case.
+std::string in_lower_case(std::string text);
+
 /// Returns whether the name of a file has the extension of an image.
 bool has_image_extension(const std::filesystem::path& file);
 

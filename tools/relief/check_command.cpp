@@ -138,7 +138,7 @@ ExitCode print_rules(const CheckCommand& command) {
     return ExitCode::done;
 }
 
-/// What changes the findings of a file besides its content.
+/// Returns a text of the limits that change the findings of a file.
 std::string limits_key() {
     const InputLimits limits = input_limits();
     return fmt::format("{} {} {}", limits.outside_files, limits.memory, limits.pixels);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What `relief check` knows about a file: its findings and its figures, as they are in the cache.
+/// The results of `relief check` for a file: its findings and its figures, which the cache keeps.
 /// Tests: tests/check/relief_check_test.cpp.
 #pragma once
 
@@ -21,7 +21,7 @@ namespace relief::tools {
 
 enum class CheckedKind { model, image, folder };
 
-/// What a rule found in a file.
+/// A finding of a rule in a file.
 struct CheckFinding {
     const CheckRule* rule = nullptr;
     CheckSeverity severity = CheckSeverity::note;

@@ -31,11 +31,6 @@ namespace fs = std::filesystem;
 /// corners, as in most hand-made models.
 constexpr double max_opposed_share = 0.01;
 
-/// What a primitive is used for.
-struct PartUse {
-    bool shows_tangent_maps = false;  ///< Its material has a map in the tangent frame.
-};
-
 /// The findings of one rule and severity in all parts of a model.
 struct FindingSum {
     CheckFinding finding;
@@ -77,15 +72,16 @@ class FindingSums {
 };
 
 /// The severity of a condition of a part. A defect that its material does not show is a note.
+/// \param shows_tangent_maps  the material has a map in the tangent frame
 CheckSeverity severity_of(const MeshConditionCount& found, const CheckedPart& part,
-                          const PartUse& use) {
+                          bool shows_tangent_maps) {
     const CheckSeverity severity = check_rule_of(found.condition).severity;
     switch (found.condition) {
         case MeshCondition::texture_degenerate:
             // With stored tangents, the texture is a line there, but shades right.
-            return use.shows_tangent_maps && !part.tangents ? severity : CheckSeverity::note;
+            return shows_tangent_maps && !part.tangents ? severity : CheckSeverity::note;
         case MeshCondition::tangent_along_normal:
-            return use.shows_tangent_maps ? severity : CheckSeverity::note;
+            return shows_tangent_maps ? severity : CheckSeverity::note;
         case MeshCondition::normal_opposed:
             return static_cast<double>(found.count) >
                            max_opposed_share * static_cast<double>(part.vertices)
@@ -96,19 +92,19 @@ CheckSeverity severity_of(const MeshConditionCount& found, const CheckedPart& pa
     }
 }
 
-void add_conditions(const CheckedPart& part, const PartUse& use, FindingSums& sums) {
+void add_conditions(const CheckedPart& part, bool shows_tangent_maps, FindingSums& sums) {
     for (const MeshConditionCount& found : part.diagnosis.conditions)
-        sums.add(check_rule_of(found.condition), severity_of(found, part, use), part.name,
-                 to_finding(found));
+        sums.add(check_rule_of(found.condition), severity_of(found, part, shows_tangent_maps),
+                 part.name, to_finding(found));
 }
 
-void add_tangent_findings(const CheckedPart& part, const PartUse& use, FindingSums& sums) {
+void add_tangent_findings(const CheckedPart& part, bool shows_tangent_maps, FindingSums& sums) {
     const auto add = [&](const char* id, const char* kind, const char* outcome) {
         const CheckRule& rule = rule_named(id);
         sums.add(rule, rule.severity, part.name, {kind, "primitive", outcome, 1, {}});
     };
     if (!part.tangents) {
-        if (use.shows_tangent_maps)
+        if (shows_tangent_maps)
             add("model/no-tangents", "normal map without tangents",
                 "each program computes its own");
         return;
@@ -117,7 +113,7 @@ void add_tangent_findings(const CheckedPart& part, const PartUse& use, FindingSu
     if (!tangents.has_normals)
         return add("model/tangents-ignored", "tangents without normals", "glTF ignores them");
     if (tangents.has_texcoords && tangents.identified.corners > 0 && !tangents.identified.method &&
-        use.shows_tangent_maps)
+        shows_tangent_maps)
         add("model/unknown-tangents", "tangents of an unknown method",
             "a map may be baked for others");
 }
@@ -200,9 +196,9 @@ class DocumentCheck {
 
     void check_primitive(GltfPrimitiveId id, const CheckedPart& part) {
         const GltfMaterial* const material = material_of(document_.mesh(id));
-        const PartUse use{material != nullptr && shows_tangent_maps(*material)};
-        add_conditions(part, use, sums_);
-        add_tangent_findings(part, use, sums_);
+        const bool is_mapped = material != nullptr && shows_tangent_maps(*material);
+        add_conditions(part, is_mapped, sums_);
+        add_tangent_findings(part, is_mapped, sums_);
         if (material == nullptr) return;
         const std::vector<int> sets = document_.texcoord_sets(id);
         std::set<int> missing;
@@ -408,9 +404,9 @@ void check_mesh_file(const MeshFile& contents, const CheckedModel& model, const 
     const auto in_tangent_frame = [](const UsedImage& image) {
         return slot_info(image.role.slot).in_tangent_frame;
     };
-    const PartUse use{std::ranges::any_of(item.images, in_tangent_frame)};
+    const bool is_mapped = std::ranges::any_of(item.images, in_tangent_frame);
     FindingSums sums;
-    add_conditions(model.parts.front(), use, sums);
+    add_conditions(model.parts.front(), is_mapped, sums);
     sums.move_to(item);
     const Mesh& mesh = contents.mesh;
     if (mesh.texcoords.empty() && !item.images.empty()) {

@@ -83,7 +83,7 @@ std::string line_of(const CheckedItem& item, const CheckFinding& finding) {
     const std::string remedy = remedy_text(item, finding);
     const auto escaped = [](const std::string& text) { return html_escaped(printable(text)); };
     const std::string advice = remedy.empty() ? ""
-                               : remedy.starts_with("relief-")
+                               : finding.rule->is_fixable() && remedy.starts_with("relief-")
                                    ? fmt::format("<br>→ <code>{}</code>", escaped(remedy))
                                    : fmt::format("<br>→ {}", escaped(remedy));
     return fmt::format("<li class=\"{0}\"><b>{0}</b> {1} <code>{2}</code>{3}</li>\n",

@@ -44,15 +44,17 @@ CheckSeverity severity_of(const JsonCursor& json) {
     json.fail_unknown(json.text(), names);
 }
 
+bool is_rule_of(std::string_view rule, const std::string& pattern) {
+    return matches_pattern(rule, pattern == "*" ? "**" : pattern);
+}
+
 /// A pattern that fits no rule is a mistake. \throws InvalidInput
 void require_rule(const std::string& pattern, const JsonCursor& json) {
-    const auto fits = [&](const CheckRule& rule) {
-        return matches_pattern(rule.id, pattern == "*" ? "**" : pattern);
-    };
-    if (std::ranges::any_of(check_rules(), fits)) return;
     std::vector<std::string> names;
-    for (const CheckRule& rule : check_rules())
+    for (const CheckRule& rule : check_rules()) {
+        if (is_rule_of(rule.id, pattern)) return;
         names.emplace_back(rule.id);
+    }
     json.fail_unknown(pattern, names);
 }
 
@@ -96,11 +98,13 @@ CheckSuppression suppression_of(const JsonCursor& json) {
     return suppression;
 }
 
-BaselineEntry baseline_entry_of(const JsonCursor& json) {
+void add_to_baseline(const JsonCursor& json, CheckProject& project) {
     json.allow({"rule", "file", "place", "count"});
     const auto place = json.find("place");
-    return {json.at("rule").text(), json.at("file").text(), place ? place->text() : "",
-            static_cast<std::size_t>(json.at("count").unsigned_number())};
+    std::size_t& count =
+        project
+            .baseline[{json.at("rule").text(), json.at("file").text(), place ? place->text() : ""}];
+    count = std::max(count, static_cast<std::size_t>(json.at("count").unsigned_number()));
 }
 
 template <typename Thing>
@@ -112,7 +116,7 @@ void read_list(const JsonCursor& root, std::string_view key, Thing (*thing_of)(c
         list.push_back(thing_of(one));
 }
 
-/// Returns the severities in the order of the file, which matters: the cursor sorts its members.
+/// Reads the severities. Patterns with more letters come later, and win.
 void read_severities(const JsonCursor& root, CheckProject& project) {
     const auto rules = root.find("rules");
     if (!rules) return;
@@ -120,7 +124,6 @@ void read_severities(const JsonCursor& root, CheckProject& project) {
         require_rule(pattern, severity);
         project.severities.emplace_back(pattern, severity_of(severity));
     }
-    // The more of a rule is named, the later.
     std::ranges::stable_sort(project.severities, {},
                              [](const auto& entry) { return entry.first.size(); });
 }
@@ -130,27 +133,19 @@ bool matches_any(const std::string& name, const std::vector<std::string>& patter
         patterns, [&](const std::string& pattern) { return matches_pattern(name, pattern); });
 }
 
-bool is_rule_of(std::string_view rule, const std::string& pattern) {
-    return matches_pattern(rule, pattern == "*" ? "**" : pattern);
-}
-
 // Budgets.
 
-/// The image files and embedded images of a model with their names.
-std::vector<std::pair<std::string, ImageFigures>> images_of(
-    const CheckedItem& item, const std::map<fs::path, ImageFigures>& images) {
-    std::vector<std::pair<std::string, ImageFigures>> all;
+/// Returns the bytes of the image files and embedded images of a model on the GPU.
+std::uint64_t image_bytes(const CheckedItem& item, const std::map<fs::path, ImageFigures>& images) {
+    std::uint64_t bytes = 0;
     std::set<fs::path> seen;
     for (const UsedImage& used : item.images) {
         const auto found = images.find(identity_of(used.file));
-        if (found != images.end() && seen.insert(found->first).second)
-            all.emplace_back(used.file.filename().string(), found->second);
+        if (found != images.end() && seen.insert(found->first).second) bytes += found->second.bytes;
     }
-    for (std::size_t i = 0; i < item.model.embedded.size(); ++i) {
-        if (item.model.embedded[i].width > 0)
-            all.emplace_back(fmt::format("image {}", i), item.model.embedded[i]);
-    }
-    return all;
+    for (const ImageFigures& image : item.model.embedded)
+        bytes += image.bytes;
+    return bytes;
 }
 
 /// Bytes of the vertices (position, normal, tangent, texture coordinates) and indices on the GPU.
@@ -174,13 +169,11 @@ class BudgetCheck {
         }
         exceeds("budget/triangles", "", budget_.triangles, item_.model.triangles, "triangles");
         exceeds("budget/materials", "", budget_.materials, item_.model.materials, "materials");
-        std::uint64_t bytes = geometry_bytes(item_.model);
-        for (const auto& [name, image] : images_of(item_, images_)) {
-            bytes += image.bytes;
-            // A file is reported by itself.
-            if (name.starts_with("image ")) check_map(name, image);
-        }
-        exceeds("budget/memory", "", budget_.memory, bytes, "bytes on the GPU");
+        // An image file is reported by itself.
+        for (std::size_t i = 0; i < item_.model.embedded.size(); ++i)
+            check_map(fmt::format("image {}", i), item_.model.embedded[i]);
+        exceeds("budget/memory", "", budget_.memory,
+                geometry_bytes(item_.model) + image_bytes(item_, images_), "bytes on the GPU");
         for (const MaterialFigures& surface : item_.model.surfaces)
             check_density(surface);
     }
@@ -228,10 +221,8 @@ class BudgetCheck {
 
 bool is_in_baseline(const CheckProject& project, const std::string& name,
                     const CheckFinding& finding) {
-    return std::ranges::any_of(project.baseline, [&](const BaselineEntry& entry) {
-        return entry.rule == finding.rule->id && entry.file == name &&
-               entry.place == finding.place && finding.count <= entry.count;
-    });
+    const auto entry = project.baseline.find({std::string(finding.rule->id), name, finding.place});
+    return entry != project.baseline.end() && finding.count <= entry->second;
 }
 
 bool is_suppressed(const CheckProject& project, const std::string& name,
@@ -269,7 +260,10 @@ CheckProject read_check_project(const fs::path& file) {
         read_severities(root, project);
         read_list(root, "suppress", suppression_of, project.suppressions);
         read_list(root, "budgets", budget_of, project.budgets);
-        read_list(root, "baseline", baseline_entry_of, project.baseline);
+        if (const auto baseline = root.find("baseline")) {
+            for (const JsonCursor& entry : baseline->elements())
+                add_to_baseline(entry, project);
+        }
     });
     return project;
 }

@@ -33,24 +33,26 @@ struct CheckSuppression {
     std::vector<std::string> files;
 };
 
-/// A finding that is accepted for now: it is reported again if its count grows.
+/// A finding that is accepted for now.
 struct BaselineEntry {
     std::string rule;
     std::string file;
     std::string place;
-    std::size_t count = 0;
+
+    auto operator<=>(const BaselineEntry&) const = default;
 };
 
 struct CheckProject {
     std::filesystem::path file;  ///< Empty: there is none.
-    std::filesystem::path
-        folder;  ///< To which names of files are relative; "" for the current one.
+    /// The folder to which names of files are relative; "" for the current one.
+    std::filesystem::path folder;
     std::vector<std::string> exclude;
     /// Patterns of rules with their severities; later ones win.
     std::vector<std::pair<std::string, CheckSeverity>> severities;
     std::vector<CheckSuppression> suppressions;
     std::vector<CheckBudget> budgets;
-    std::vector<BaselineEntry> baseline;
+    /// The counts of accepted findings: those that have grown are reported again.
+    std::map<BaselineEntry, std::size_t> baseline;
 
     /// Returns the name of a file for patterns and the baseline, with '/'.
     [[nodiscard]] std::string name_of(const std::filesystem::path& path) const;

@@ -42,7 +42,7 @@ constexpr std::array all_rules = {
               "the limit `file_size` of relief.json", "downloads and repositories grow", no_remedy},
     CheckRule{"budget/map-size", error, "A map is larger than its budget",
               "the limit `map_size` of relief.json", "memory and loading time",
-              "relief-bake convert with --size, or a smaller export"},
+              "relief-bake convert with --resize, or a smaller export"},
     CheckRule{"budget/materials", error, "The model has more materials than its budget",
               "the limit `materials` of relief.json", "each material is a draw call",
               "bake them into one with relief-bake mesh"},

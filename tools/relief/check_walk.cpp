@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <map>
 #include <optional>
 #include <set>
@@ -96,12 +95,6 @@ class Walk {
     const std::function<bool(const fs::path&)>& excludes_;
     std::set<fs::path> known_;
 };
-
-std::string in_lower_case(std::string text) {
-    for (char& letter : text)
-        letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    return text;
-}
 
 /// The slot of a map that is known by its name.
 std::optional<TextureSlot> slot_of(MapKind kind) {
