@@ -236,8 +236,8 @@ struct Tolerances {
     double degrees = 0.0;
     double length = 0.0;     ///< Of heights, curvatures and positions.
     double occlusion = 0.0;  ///< Of the share of rays.
-    /// Of the components of bent normals. If few of 16 rays are open, one ray more can turn the
-    /// mean by any angle.
+    /// The largest difference of a component of bent normals. If few of 16 rays are open, one ray
+    /// more can turn the mean by any angle.
     double bent = 0.0;
     double thickness = 0.0;
     double color = 0.0;  ///< Of all values of materials.

@@ -139,7 +139,7 @@ TEST(DrawModes, SeeOnlyTheirOwnSurface) {
     options.occlusion = false;
     options.remesh = Remeshing::never;
     const auto transparent_share = [&](const Asset& asset) {
-        // Of the opaque triangles: texels at their centers.
+        // These texels are at the centers of the opaque triangles.
         int all = 0, transparent = 0;
         for (const MaterialRange& range : asset.mesh.material_ranges) {
             for (std::uint32_t i = 0; range.material == 0U && i < range.triangle_count; ++i) {

@@ -93,7 +93,7 @@ TEST(MakeCommand, ExplainsThePlanAndMakesNothing) {
     const ProgramResult page =
         workplace.run("relief make data/urn-high.ply --explain --report out/plan.html");
     EXPECT_EQ(page.exit_code, 2);
-    EXPECT_THAT(page.error, HasSubstr("--report out/plan.html: plans are no page"));
+    EXPECT_THAT(page.error, HasSubstr("--report out/plan.html: a plan cannot be a page"));
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ std::string repeating_line(const MakeRequest& request, const Job& job) {
 ExitCode explain(const MakeCommand& command, const TaskList& list, Json head) {
     if (has_page(command.report)) {
         throw UsageError(
-            fmt::format("--report {}: plans are no page", command.report.file->string()),
+            fmt::format("--report {}: a plan cannot be a page", command.report.file->string()),
             "write a .json");
     }
     Json plans = Json::array();

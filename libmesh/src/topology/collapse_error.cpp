@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The errors of edge collapses. A vertex never moves to a new place, so the error that has
-// accumulated at a vertex is one number, and the cost of moving v onto u is the quadric of v at u
-// plus that number of u. Tests: tests/mesh/topology/decimate_test.cpp.
+// The errors of edge collapses. A vertex moves to a new place only before planes are forgotten, or
+// at the end, so the error that has accumulated at a vertex is one number, and the cost of moving v
+// onto u is the quadric of v at u plus that number of u. Tests:
+// tests/mesh/topology/decimate_test.cpp.
 #include <algorithm>
 
 #include "topology/edge_collapse_parts.h"

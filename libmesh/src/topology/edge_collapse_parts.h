@@ -298,7 +298,7 @@ class CollapseError {
     double part_error_ = max_part_error;
     // By vertex:
     std::vector<Quadric> quadrics_;
-    std::vector<double> errors_;  ///< The quadric at the vertex itself.
+    std::vector<double> errors_;  ///< The quadric at the vertex itself, and what it had before.
     std::vector<double> areas_;
     /// By wedge: the sums of weight, and of gradient and offset of each attribute.
     std::vector<double> attribute_sums_;

@@ -91,9 +91,9 @@ class ContentCount {
         }
     }
 
-    /// What drawing a primitive needs: half of it for its buffers and uniforms, and half for the
-    /// reasons of its effects. And its arrays: floats and indices of 32 bits, for the vertices that
-    /// it uses.
+    /// Takes the memory that drawing a primitive needs, half of it for its buffers and uniforms,
+    /// and half for the reasons of its effects; and its arrays: floats and indices of 32 bits, for
+    /// the vertices that it uses.
     void take_primitive(const Json& primitive, std::size_t mesh, std::size_t number) {
         constexpr std::size_t bytes_per_primitive = 20480;
         const auto name = [&] { return fmt::format("meshes[{}].primitives[{}]", mesh, number); };

@@ -32,7 +32,7 @@ std::size_t add_accessor(GltfContents& contents, std::span<const Element> elemen
 
 Json primitive_of(GltfContents& contents, const Mesh& mesh) {
     validate(mesh);
-    if (mesh.triangles.empty()) throw InvalidInput("a node has no triangle");
+    if (mesh.triangles.empty()) throw InvalidInput("a node must have at least one triangle");
     Json attributes;
     const auto add = [&](const char* name, const auto& values, const char* type) {
         if (values.empty()) return;
