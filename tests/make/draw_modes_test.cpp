@@ -54,7 +54,7 @@ AssetOptions kept_coordinates() {
     return options;
 }
 
-std::vector<int> texel(const Image& image, int x, int y) {
+std::vector<int> values_at(const Image& image, int x, int y) {
     const auto channels = static_cast<std::size_t>(image.channels);
     const std::size_t at = channels * static_cast<std::size_t>(y * image.width + x);
     const auto samples = image.as<std::uint8_t>().subspan(at, channels);
@@ -71,8 +71,8 @@ TEST(DrawModes, StayApart) {
     const Asset asset = make_asset(source, kept_coordinates());
     EXPECT_THAT(asset.draw_modes, ElementsAre(DrawMode{}, DrawMode{AlphaMode::blend, 0.5F, true}));
     EXPECT_TRUE(bake_report(asset).empty());
-    EXPECT_THAT(texel(*asset.color_map, 4, 16), ElementsAre(255, 0, 0, 255));
-    EXPECT_THAT(texel(*asset.color_map, 28, 16), ElementsAre(0, 255, 0, 64));
+    EXPECT_THAT(values_at(*asset.color_map, 4, 16), ElementsAre(255, 0, 0, 255));
+    EXPECT_THAT(values_at(*asset.color_map, 28, 16), ElementsAre(0, 255, 0, 64));
     EXPECT_LE(asset.mesh.triangles.size(), 20U);
     // The border between both halves stays.
     double opaque_area = 0.0;
@@ -147,10 +147,10 @@ TEST(DrawModes, SeeOnlyTheirOwnSurface) {
                 const std::vector<glm::vec2>& at = asset.mesh.texcoords;
                 const glm::vec2 uv = 64.0F * (at[t.x] + at[t.y] + at[t.z]) / 3.0F;
                 ++all;
-                transparent +=
-                    texel(*asset.color_map, static_cast<int>(uv.x), static_cast<int>(uv.y))[3] < 255
-                        ? 1
-                        : 0;
+                transparent += values_at(*asset.color_map, static_cast<int>(uv.x),
+                                         static_cast<int>(uv.y))[3] < 255
+                                   ? 1
+                                   : 0;
             }
         }
         EXPECT_GT(all, 1);
@@ -219,12 +219,12 @@ TEST(DrawModes, HaveOneLimitForMaskedMaterials) {
     EXPECT_TRUE(asset.draw_modes.empty());
     EXPECT_EQ(asset.material.alpha_mode, AlphaMode::mask);
     EXPECT_EQ(asset.material.alpha_cutoff, 0.25F);
-    EXPECT_THAT(texel(*asset.color_map, 28, 16), ElementsAre(0, 255, 0, 32));
+    EXPECT_THAT(values_at(*asset.color_map, 28, 16), ElementsAre(0, 255, 0, 32));
     source.draw_modes[0].alpha_cutoff = 0.5F;
     asset = make_asset(source, kept_coordinates());
     EXPECT_EQ(asset.material.alpha_cutoff, 0.5F);
-    EXPECT_THAT(texel(*asset.color_map, 4, 16), ElementsAre(255, 0, 0, 0));
-    EXPECT_THAT(texel(*asset.color_map, 28, 16), ElementsAre(0, 255, 0, 0));
+    EXPECT_THAT(values_at(*asset.color_map, 4, 16), ElementsAre(255, 0, 0, 0));
+    EXPECT_THAT(values_at(*asset.color_map, 28, 16), ElementsAre(0, 255, 0, 0));
     EXPECT_EQ(bake_report(asset).count("masked materials with different alpha cutoffs"), 2U);
 }
 

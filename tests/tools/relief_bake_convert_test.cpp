@@ -45,9 +45,9 @@ AnalyticHeights ground_truth() {
 }
 
 /// Writes the exact normals of the surface.
-void write_map(const Workplace& workplace, const std::string& name,
-               const NormalMapFormat& format = {},
-               const std::map<std::string, std::string>& metadata = {}) {
+void write_normals(const Workplace& workplace, const std::string& name,
+                   const NormalMapFormat& format = {},
+                   const std::map<std::string, std::string>& metadata = {}) {
     Report report;
     write_image(workplace / name,
                 encode_normal_map(normals_image(side, side, waves()), format, report), metadata);
@@ -81,7 +81,7 @@ TEST(ConvertCommand, FlippingGreenTwiceGivesTheSameTexels) {
     for (const FlatCode flat : {FlatCode::middle, FlatCode::half}) {
         for (const int bits : {8, 16}) {
             const NormalMapFormat format{bits, Green::up, flat};
-            write_map(workplace, "gl.png", format, normal_map_metadata(format));
+            write_normals(workplace, "gl.png", format, normal_map_metadata(format));
             const ProgramResult there = run(workplace, "gl.png out/dx.png --flip green");
             EXPECT_THAT(there.out, HasSubstr("steps     green inverted, all codes kept\n"));
             EXPECT_EQ(green_of(workplace / "out/dx.png"), "down");
@@ -99,7 +99,7 @@ TEST(ConvertCommand, FlippingGreenTwiceGivesTheSameTexels) {
 
 TEST(ConvertCommand, GreenIsNotGuessed) {
     const Workplace workplace;
-    write_map(workplace, "map.png");
+    write_normals(workplace, "map.png");
     const ProgramResult refused = workplace.run("relief-bake convert map.png out/n.png --green up");
     EXPECT_EQ(refused.exit_code, 1);
     EXPECT_EQ(refused.error,
@@ -118,8 +118,8 @@ TEST(ConvertCommand, GreenIsNotGuessed) {
 
 TEST(ConvertCommand, GreenIsDetectedFromTheSlopesOnRequest) {
     const Workplace workplace;
-    write_map(workplace, "up.png");
-    write_map(workplace, "down.png", {16, Green::down});
+    write_normals(workplace, "up.png");
+    write_normals(workplace, "down.png", {16, Green::down});
     for (const std::string name : {"up", "down"}) {
         const ProgramResult result =
             run(workplace, name + ".png out/n.png --input-green auto --green up");
@@ -150,13 +150,13 @@ TEST(ConvertCommand, SignedFloatMapsAreRecognized) {
                 HasSubstr("zero is 0 (given)\n"));
     EXPECT_LT(normal_error(decoded(workplace / "out/n.png"), ground_truth()).max,
               degrees_of_16_bit);
-    write_map(workplace, "map.png");
+    write_normals(workplace, "map.png");
     EXPECT_EQ(workplace.run("relief-bake convert map.png out/m.png --input-signed").exit_code, 2);
 }
 
 TEST(ConvertCommand, LargeMapsStayInTheirFiles) {
     const Workplace workplace;
-    write_map(workplace, "map.png", {}, {{"relief:green", "down"}, {"relief:flat", "32768"}});
+    write_normals(workplace, "map.png", {}, {{"relief:green", "down"}, {"relief:flat", "32768"}});
     const InputMap whole = read_normal_map(workplace / "map.png", {});
     const InputMap opened = open_normal_map(workplace / "map.png", {}, 64 * 64 * 6 - 1);
     EXPECT_FALSE(whole.image.empty());
@@ -176,7 +176,7 @@ TEST(ConvertCommand, LargeMapsStayInTheirFiles) {
 
 TEST(ConvertCommand, MapsAxes) {
     const Workplace workplace;
-    write_map(workplace, "map.png", {}, {{"relief:green", "up"}});
+    write_normals(workplace, "map.png", {}, {{"relief:green", "up"}});
     EXPECT_THAT(run(workplace, "map.png out/n.png --axes x,z,-y").out,
                 HasSubstr("steps     axes mapped to x,z,-y, all codes kept\n"));
     EXPECT_EQ(green_of(workplace / "out/n.png"), "unknown");
@@ -199,7 +199,7 @@ TEST(ConvertCommand, MapsAxes) {
 TEST(ConvertCommand, DepthAndZeroCodeChangeWithoutChangingNormals) {
     const Workplace workplace;
     const NormalMapFormat half{16, Green::up, FlatCode::half};
-    write_map(workplace, "half.png", half, normal_map_metadata(half));
+    write_normals(workplace, "half.png", half, normal_map_metadata(half));
     EXPECT_THAT(run(workplace, "half.png out/middle.png --zero-code 128").out,
                 HasSubstr("format    16 bit, zero at 32768 of 65535 (glTF and engines decode zero "
                           "at 32767.5, which tilts normals by 0.0012 degrees), green up\n"));
@@ -228,7 +228,7 @@ TEST(ConvertCommand, DepthAndZeroCodeChangeWithoutChangingNormals) {
 
 TEST(ConvertCommand, RebuildsZFromTwoChannels) {
     const Workplace workplace;
-    write_map(workplace, "map.png");
+    write_normals(workplace, "map.png");
     Image map = read_image(workplace / "map.png", ImageUse::data);
     Image xy = make_image(side, side, 2, 16, ColorSpace::data);
     Image swizzled = make_image(side, side, 4, 16, ColorSpace::data);
@@ -255,7 +255,7 @@ TEST(ConvertCommand, RebuildsZFromTwoChannels) {
 
 TEST(ConvertCommand, StrengthScalesSlopesAndResizingKeepsThem) {
     const Workplace workplace;
-    write_map(workplace, "map.png");
+    write_normals(workplace, "map.png");
     std::vector<HeightWave> steep = waves();
     for (HeightWave& wave : steep)
         wave.amplitude *= -3.0;
@@ -282,7 +282,7 @@ TEST(ConvertCommand, DetailsAreBlendedForEitherDirectionOfGreen) {
     both.insert(both.end(), detail_waves.begin(), detail_waves.end());
     Report report;
     const Image detail = normals_image(32, 32, detail_waves);
-    write_map(workplace, "base.png", {}, {{"relief:green", "up"}});
+    write_normals(workplace, "base.png", {}, {{"relief:green", "up"}});
     write_image(workplace / "detail.png",
                 encode_normal_map(detail, {16, Green::down, FlatCode::half}, report));
     const std::string line =
@@ -349,7 +349,7 @@ TEST(ConvertCommand, MipLevelsStoreLengthsAndRoughness) {
 
 TEST(ConvertCommand, AlphaIsKeptOrDropped) {
     const Workplace workplace;
-    write_map(workplace, "map.png", {8});
+    write_normals(workplace, "map.png", {8});
     Image alpha = make_image(side, side, 1, 32, ColorSpace::data);
     for (std::size_t i = 0; i < alpha.sample_count(); ++i)
         alpha.as<float>()[i] = i % side < side / 2 ? 0.2F : 0.8F;
@@ -411,12 +411,12 @@ TEST(ConvertCommand, CountsNormalsThatAreNotUnitAndTexelsWithoutDirection) {
 
 TEST(ConvertCommand, MetadataIsKeptUnlessItChanges) {
     const Workplace workplace;
-    write_map(workplace, "map.png", {},
-              {{"relief:green", "up"},
-               {"relief:content", "normal map, object space"},
-               {"relief:basis", "mikktspace"},
-               {"Author", "somebody"},
-               {"Software", "another"}});
+    write_normals(workplace, "map.png", {},
+                  {{"relief:green", "up"},
+                   {"relief:content", "normal map, object space"},
+                   {"relief:basis", "mikktspace"},
+                   {"Author", "somebody"},
+                   {"Software", "another"}});
     run(workplace, "map.png out/n.tif --flip green --bits 8");
     const auto metadata = read_image_info(workplace / "out/n.tif").metadata;
     EXPECT_EQ(metadata.at("relief:green"), "down");
@@ -427,8 +427,8 @@ TEST(ConvertCommand, MetadataIsKeptUnlessItChanges) {
 
 TEST(ConvertCommand, AMapMayReplaceItsInputAndManyAreWrittenToAFolder) {
     const Workplace workplace;
-    write_map(workplace, "a.png");
-    write_map(workplace, "b.tif");
+    write_normals(workplace, "a.png");
+    write_normals(workplace, "b.tif");
     workplace.write("bad.png", "this is no image");
     const ProgramResult result =
         workplace.run("relief-bake convert a.png bad.png b.tif -o out/maps/ --flip green");
@@ -446,7 +446,7 @@ TEST(ConvertCommand, AMapMayReplaceItsInputAndManyAreWrittenToAFolder) {
 
 TEST(ConvertCommand, OutputDoesNotDependOnThreads) {
     const Workplace workplace;
-    write_map(workplace, "map.png");
+    write_normals(workplace, "map.png");
     for (const std::string threads : {"1", "2"}) {
         run(workplace, "map.png out/" + threads +
                            ".png --detail map.png --resize 130% --strength 2 --bits 8 --dither "

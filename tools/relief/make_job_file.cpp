@@ -208,9 +208,9 @@ std::vector<std::string> JobFile::arguments(const CLI::App& app, const MakeOptio
         if (!value.is_boolean()) throw fault(path, "is neither true nor false");
         return value.get<bool>() ? std::vector<std::string>{name} : std::vector<std::string>{};
     }
-    std::vector<Json> values = {value};
-    if (value.is_array() && option.values != OptionValues::one)
-        values.assign(value.begin(), value.end());
+    const bool is_list = value.is_array() && option.values != OptionValues::one;
+    const std::vector<Json> values =
+        is_list ? value.get<std::vector<Json>>() : std::vector<Json>(1, value);
     std::vector<std::string> result;
     for (const Json& one : values) {
         if (!one.is_string() && !one.is_number()) throw fault(path, "is neither text nor a number");

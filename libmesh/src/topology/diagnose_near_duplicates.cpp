@@ -18,7 +18,7 @@
 namespace relief::detail {
 namespace {
 
-constexpr std::size_t grain = 4096;
+constexpr std::size_t members_per_task = 4096;
 constexpr double cell_in_reaches = 64.0;
 
 // Maximum number of positions per cell that a search tests. Valid meshes have one or two. Only
@@ -88,7 +88,7 @@ class PositionGrid {
           shift_(64 - static_cast<int>(std::bit_width(members.size() | 1U))) {
         std::vector<std::uint32_t> buckets(members.size());
         first_.assign((std::size_t{1} << (64 - shift_)) + 1, 0);
-        parallel_for(members.size(), grain, [&](std::size_t begin, std::size_t end) {
+        parallel_for(members.size(), members_per_task, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const glm::vec3& position = positions[members[i]];
                 buckets[i] = bucket_of(cell_of(position, exponent_of(position)));
@@ -178,7 +178,7 @@ void diagnose_near_duplicates(const DiagnosedMesh& diagnosed, Tally& tally) {
     }
     const PositionGrid grid(positions, members);
     std::vector<std::uint8_t> is_near(members.size(), 0);
-    parallel_for(members.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(members.size(), members_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             is_near[i] = is_near_another(grid, positions[members[i]], members[i]) ? 1 : 0;
     });
