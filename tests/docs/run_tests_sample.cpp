@@ -90,4 +90,13 @@ TEST_P(Parameter, IsNotNegative) {
 INSTANTIATE_TEST_SUITE_P(Small, Parameter, testing::Values(1));
 INSTANTIATE_TEST_SUITE_P(Large, Parameter, testing::Values(1000));
 
+class Sweep : public testing::TestWithParam<int> {};
+
+TEST_LABELS(slow, sweep);
+TEST_P(Sweep, IsNotNegative) {
+    EXPECT_GE(GetParam(), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Sweep, testing::Range(0, 5));
+
 }  // namespace

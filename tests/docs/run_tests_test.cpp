@@ -138,7 +138,7 @@ TEST_F(RunTests, SelectsByLabelAndLeavesSlowCasesOut) {
     EXPECT_THAT(gl, HasSubstr("sample/Crash.Before gl\n"));
     EXPECT_THAT(gl, Not(HasSubstr("Sample.Passes")));
     EXPECT_THAT(run("--list").out, Not(HasSubstr("SlowOnes")));
-    EXPECT_EQ(run("-L slow --list").out,
+    EXPECT_EQ(run("-L slow -E Sweep --list").out,
               "sample/SlowOnes.Slow unit slow\n"
               "sample/Large/Parameter.IsNotNegative/0 unit slow\n");
     EXPECT_THAT(run("--list").out, HasSubstr("sample/Small/Parameter.IsNotNegative/0 unit\n"));
@@ -148,6 +148,24 @@ TEST_F(RunTests, SelectsByLabelAndLeavesSlowCasesOut) {
     EXPECT_THAT(run("--list").out, Not(HasSubstr("Measured.Memory")));
     EXPECT_EQ(run("-L nothing").exit_code, 2);
     EXPECT_EQ(run("-R NoSuchCase").exit_code, 1);
+}
+
+TEST_F(RunTests, RunsAPartOfEachSweepInTurn) {
+    const auto rest_of = [](int count) {
+        return fmt::format(
+            "run-tests: note: left out {} cases of sweeps, which --sweeps with other "
+            "numbers runs\n",
+            count);
+    };
+    const auto line = [](int number) {
+        return fmt::format("sample/Of/Sweep.IsNotNegative/{} unit slow\n", number);
+    };
+    EXPECT_EQ(run("--all -R Sweep --list").out, line(0) + line(1) + line(2) + line(3) + line(4));
+    EXPECT_EQ(run("--all -R Sweep --list --sweeps 8/3").out, rest_of(4) + line(2));
+    EXPECT_EQ(run("--all -R Sweep --list --sweeps 9/3").out, rest_of(3) + line(0) + line(3));
+    EXPECT_EQ(run("--all -R Sweep --list --sweeps 10/3").out, rest_of(3) + line(1) + line(4));
+    EXPECT_THAT(run("--all --list --sweeps 10/3").out, HasSubstr("sample/SlowOnes.Slow"));
+    EXPECT_EQ(run("--sweeps 1/0").exit_code, 2);
 }
 
 }  // namespace

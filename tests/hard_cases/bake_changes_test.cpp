@@ -441,7 +441,7 @@ TEST_P(BakeChanges, OfAnyHighMeshLeaveTheMapAlone) {
 
 class BakeHighMeshSweep : public testing::TestWithParam<MeshChange> {};
 
-TEST_LABELS(slow);
+TEST_LABELS(slow, sweep);
 TEST_P(BakeHighMeshSweep, LeavesTheMapAlone) {
     expect_same_bakes(GetParam(), false, 1);
 }
@@ -456,7 +456,7 @@ constexpr MeshChange changes_of_any_low_mesh[] = {{"OrderOfTriangles", reorder_t
 
 class BakeLowMeshSweep : public testing::TestWithParam<MeshChange> {};
 
-TEST_LABELS(slow);
+TEST_LABELS(slow, sweep);
 TEST_P(BakeLowMeshSweep, LeavesTheMapAlone) {
     expect_same_bakes(GetParam(), true, 1);
 }

@@ -246,7 +246,7 @@ TEST_P(DecimationChanges, LeaveTheResultAlone) {
 
 class DecimationMeshSweep : public testing::TestWithParam<MeshChange> {};
 
-TEST_LABELS(slow);
+TEST_LABELS(slow, sweep);
 TEST_P(DecimationMeshSweep, LeavesTheResultAlone) {
     expect_same_decimation(GetParam(), true, 1, 2);
 }

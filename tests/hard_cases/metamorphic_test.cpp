@@ -241,7 +241,7 @@ constexpr std::size_t sweep_parts = 4;
 /// All changes of one part of the meshes.
 class MeshSweep : public testing::TestWithParam<std::size_t> {};
 
-TEST_LABELS(slow);
+TEST_LABELS(slow, sweep);
 TEST_P(MeshSweep, LeavesFramesAlone) {
     const std::span all(metamorphic_meshes());
     const std::size_t first = all.size() * GetParam() / sweep_parts;

@@ -7,6 +7,8 @@
 /// |----------------|---------------------------------------------------------------------------|
 /// | unit ... docs  | the case has this label instead of its program's (tests/CMakeLists.txt)   |
 /// | slow           | it runs only with `scripts/test --all`                                    |
+/// | sweep          | it is one of many similar cases: CI runs a part of them each time, all of |
+/// |                | them in turn (`--sweeps` of run-tests)                                    |
 /// | alone          | it has a process to itself: it measures memory, or replaces operator new  |
 /// | not_sanitized  | it does not run under sanitizers: it measures errors, memory or whole     |
 /// |                | programs, or tries thousands of sets or large files, and other cases run  |
@@ -23,8 +25,8 @@
 
 namespace relief::test {
 
-constexpr std::array<std::string_view, 8> labels_of_cases = {
-    "unit", "gl", "cli", "window", "docs", "slow", "alone", "not_sanitized"};
+constexpr std::array<std::string_view, 9> labels_of_cases = {
+    "unit", "gl", "cli", "window", "docs", "slow", "sweep", "alone", "not_sanitized"};
 
 /// Returns true if a text is a list of labels, separated by ", ".
 constexpr bool are_labels(std::string_view text) {

@@ -194,14 +194,14 @@ void expect_promise_kept(const FieldRecipe& recipe, int width, int height, bool 
 
 class KernelChoiceOnFields : public testing::TestWithParam<FieldRecipe> {};
 
-TEST_LABELS(slow);
+TEST_LABELS(slow, sweep);
 TEST_P(KernelChoiceOnFields, IsWithinAFifthOfTheBestKernel) {
     expect_promise_kept(GetParam(), 128, 128, false);
     expect_promise_kept(GetParam(), 256, 256, false);
     expect_promise_kept(GetParam(), 200, 200, false);
 }
 
-TEST_LABELS(slow);
+TEST_LABELS(slow, sweep);
 TEST_P(KernelChoiceOnFields, AlsoAfterDestaircasing) {
     expect_promise_kept(GetParam(), 128, 128, true);
     expect_promise_kept(GetParam(), 200, 200, true);

@@ -275,7 +275,7 @@ constexpr double all_ratios[] = {0.1, 0.3, 0.6, 1.0, 2.0};
 
 class KernelChoiceAtAllRatios : public testing::TestWithParam<NoiseKind> {};
 
-TEST_LABELS(slow);
+TEST_LABELS(slow, sweep);
 TEST_P(KernelChoiceAtAllRatios, OnSines) {
     const bool is_colored = GetParam() == NoiseKind::blurred || GetParam() == NoiseKind::pink;
     for (const double ratio : all_ratios) {
@@ -285,7 +285,7 @@ TEST_P(KernelChoiceAtAllRatios, OnSines) {
     }
 }
 
-TEST_LABELS(slow);
+TEST_LABELS(slow, sweep);
 TEST_P(KernelChoiceAtAllRatios, OnMasks) {
     const Surface surface = soft_mask();
     for (const double ratio : all_ratios) {
@@ -324,7 +324,7 @@ TEST(KernelChoiceOnNoisyMaps, AlsoOnMasksWithSpikes) {
     expect_promise_kept(noisy_map(soft_mask(), NoiseKind::spikes, 0.5, 8), "spikes", any_width);
 }
 
-TEST_LABELS(slow);
+TEST_LABELS(slow, sweep);
 TEST_P(KernelChoiceAtAllRatios, OnAPhotograph) {
     RELIEF_NEEDS_SHARED(file, "data/textures/bricks_godot/texture_bricks.jpg");
     // Every other texel of the photograph after a Gaussian filter, whose derivatives are the
@@ -477,7 +477,7 @@ TEST_P(KernelChoiceOnStructuredNoise, IsNearTheBest) {
     expect_promise_kept(map_with(sines(0.3), GetParam()), "sines", any_width);
 }
 
-TEST_LABELS(slow);
+TEST_LABELS(slow, sweep);
 TEST_P(KernelChoiceOnStructuredNoise, IsNearTheBestOnRocksAndMasks) {
     // Blurred noise and noise of some heights resemble the edges of the mask; the latter is taken
     // for outliers there, with 2.68 times the least error.

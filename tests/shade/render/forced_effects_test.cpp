@@ -277,18 +277,29 @@ TEST_F(ForcedEffects, ThatNeedOthersChangeNoBitWithThem) {
     }
 }
 
-TEST_LABELS(slow);
-TEST_F(ForcedEffects, ChangeNoBitInScenesThatCoverAllPairs) {
+class ForcedEffectsInPairs : public ForcedEffects,
+                             public testing::WithParamInterface<std::size_t> {};
+
+constexpr std::size_t parts_of_pairs = 12;
+
+TEST_LABELS(slow, sweep);
+TEST_P(ForcedEffectsInPairs, ChangeNoBitInScenesThatCoverThem) {
+    const std::vector<Features> covering = test::covering_features();
     std::size_t scenes = 0;
     std::size_t added = 0;
-    for (const Features& features : test::covering_features()) {
+    for (std::size_t at = GetParam(); at < covering.size(); at += parts_of_pairs) {
+        const Features& features = covering[at];
         SCOPED_TRACE(describe(features));
         const test::CallingScene calling = test::scene_calling_for(features);
         added += expect_no_change(calling.scene, calling.settings);
         ++scenes;
     }
+    EXPECT_GT(scenes, 0u);
     EXPECT_GT(added, 8 * scenes) << "effects forced on in each";
 }
+
+INSTANTIATE_TEST_SUITE_P(Parts, ForcedEffectsInPairs,
+                         testing::Range(std::size_t{0}, parts_of_pairs));
 
 /// Every model and scene file in data/. Models have one light.
 std::vector<std::pair<std::string, Scene>> scenes_in_data() {

@@ -869,7 +869,7 @@ class ManyRandomScenes : public AgainstReference, public testing::WithParamInter
 
 constexpr int case_count = 10;
 
-TEST_LABELS(slow);
+TEST_LABELS(slow, sweep);
 TEST_P(ManyRandomScenes, AgreeWithTheReference) {
     const char* asked = std::getenv("RELIEF_RANDOM_SCENES");
     const std::uint64_t count = asked == nullptr ? 300 : std::strtoull(asked, nullptr, 10);

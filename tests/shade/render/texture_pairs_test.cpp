@@ -515,7 +515,7 @@ class TexturePairs : public ::testing::TestWithParam<std::tuple<Backend, std::si
     static void TearDownTestSuite() { test::release_shared_context(); }
 };
 
-TEST_LABELS(slow);
+TEST_LABELS(slow, sweep);
 TEST_P(TexturePairs, AgreeWithTheReference) {
     const auto [backend, slot] = GetParam();
     const Context* const context = test::shared_context(backend);
