@@ -311,10 +311,10 @@ std::vector<std::uint32_t> weld_near_positions(StridedSpan<const glm::vec3> posi
     for (std::size_t c = 0; c < cells.keys.size(); ++c) {
         check_cancelled();
         const std::vector<std::uint32_t>& here = cells.vertices[c];
-        for (const CellKey& offset : onwards) {
+        for (const CellKey& step : onwards) {
             const CellKey& key = cells.keys[c];
             const auto there = cells.index.find(
-                {key[0] + offset[0] + 0.0, key[1] + offset[1] + 0.0, key[2] + offset[2] + 0.0});
+                {key[0] + step[0] + 0.0, key[1] + step[1] + 0.0, key[2] + step[2] + 0.0});
             if (there == cells.index.end() || there->second == c) continue;
             const std::vector<std::uint32_t>& others = cells.vertices[there->second];
             if (sets.find(here.front()) == sets.find(others.front())) continue;
