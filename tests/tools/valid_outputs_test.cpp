@@ -48,6 +48,8 @@ constexpr std::array commands = {
 /// Commands that write a model of new triangles or coordinates, which take longer.
 constexpr std::array rebuilding_commands = {
     WritingCommand{"relief-mesh unwrap '{0}' {1} --size 64x64"},
+    WritingCommand{"relief-mesh displace '{0}' {1} --heights data/bricks-height.png --height 0.01 "
+                   "--max-triangles 3000"},
     WritingCommand{"relief-mesh remesh '{0}' {1} --resolution 16 --shell"},
     WritingCommand{"relief make '{0}' {1} --size 32 --triangles 100"},
 };

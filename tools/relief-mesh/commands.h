@@ -11,6 +11,7 @@ Command add_process_command(CLI::App& tool);
 Command add_decimate_command(CLI::App& tool);
 Command add_lods_command(CLI::App& tool);
 Command add_subdivide_command(CLI::App& tool);
+Command add_displace_command(CLI::App& tool);
 Command add_repair_command(CLI::App& tool);
 Command add_remesh_command(CLI::App& tool);
 Command add_unwrap_command(CLI::App& tool);
@@ -26,8 +27,9 @@ inline Tool relief_mesh() {
         "relief-mesh",
         "Computes normals and tangents, reshapes, inspects and compares models, and stores maps.",
         {add_process_command, add_decimate_command, add_lods_command, add_subdivide_command,
-         add_repair_command, add_remesh_command, add_unwrap_command, add_material_command,
-         add_info_command, add_check_command, add_compare_command, add_conformance_command}};
+         add_displace_command, add_repair_command, add_remesh_command, add_unwrap_command,
+         add_material_command, add_info_command, add_check_command, add_compare_command,
+         add_conformance_command}};
 }
 
 }  // namespace relief::tools

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -44,6 +45,11 @@ void add_reshape_options(CLI::App& app, ReshapeRequest& request, const std::stri
 /// reported.
 Measuring measuring_of(const ReshapeRequest& request);
 
+/// A change of all meshes of a model that adds lines of its own to the summary.
+using SummarizedChange = std::function<std::vector<FramedMesh>(
+    std::span<const TriangleInput> meshes, std::span<Report> reports, Report& whole,
+    Summary& results)>;
+
 /// Runs a command: reads, changes and writes the models, and reports.
 ///
 /// \param options  the command's options for the report
@@ -51,6 +57,10 @@ Measuring measuring_of(const ReshapeRequest& request);
 /// \param with_conditions  counts the conditions of `relief-mesh check` before and after
 /// \throws UsageError, FileError; then no file is written
 ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const ModelChange& change,
+                 Measuring measuring, const Json& options,
+                 std::optional<std::size_t> max_triangles = std::nullopt,
+                 bool with_conditions = false);
+ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const SummarizedChange& change,
                  Measuring measuring, const Json& options,
                  std::optional<std::size_t> max_triangles = std::nullopt,
                  bool with_conditions = false);

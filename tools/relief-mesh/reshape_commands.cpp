@@ -132,6 +132,7 @@ struct Reshaped {
     std::optional<double> corner_angle;
     bool with_conditions = false;
     ConditionCounts conditions;
+    Summary results;                   ///< Of the change.
     std::vector<std::string> omitted;  ///< Content that the output format cannot store.
     Findings findings;
     /// The input has at most as many triangles as --triangles, so that nothing was removed.
@@ -200,7 +201,7 @@ std::vector<SurfaceDistance> full_distances(std::span<const SurfacePair> pairs) 
 struct Reshaping {
     std::string verb;  ///< "decimate", the name of the stage.
     NormalMode normals = NormalMode::keep;
-    ModelChange change;
+    SummarizedChange change;
     Measuring measuring = Measuring::none;
     std::optional<std::size_t> max_triangles{};  ///< --triangles
     bool with_conditions = false;                ///< Counts them before and after.
@@ -217,7 +218,7 @@ Reshaped run(const Job& job, const Reshaping& reshaping, Stages& stages) {
     std::vector<SurfacePair> pairs;
     const ModelChange kept_change = [&](std::span<const TriangleInput> meshes,
                                         std::span<Report> reports, Report& whole) {
-        std::vector<FramedMesh> changed = reshaping.change(meshes, reports, whole);
+        std::vector<FramedMesh> changed = reshaping.change(meshes, reports, whole, done.results);
         for (std::size_t i = 0; i < meshes.size() && reshaping.with_conditions; ++i) {
             using Counts = std::pair<std::size_t, std::size_t>;
             add_conditions(meshes[i].mesh, &Counts::first, done.conditions);
@@ -341,6 +342,7 @@ Summary summary_of(const Job& job, const Reshaped& done, const Stages& stages) {
                             done.is_small ? " (the input is within --triangles)" : ""),
                 {{"triangles_written", changed.triangles_written},
                  {"vertices_written", changed.vertices_written}});
+    summary.add_part("", done.results);
     if (done.distance) add_distance(summary, done);
     if (done.with_conditions) add_conditions(summary, done.conditions);
     summary.add_findings(done.findings);
@@ -430,6 +432,15 @@ Measuring measuring_of(const ReshapeRequest& request) {
 }
 
 ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const ModelChange& change,
+                 Measuring measuring, const Json& options, std::optional<std::size_t> max_triangles,
+                 bool with_conditions) {
+    const SummarizedChange without_lines =
+        [&change](std::span<const TriangleInput> meshes, std::span<Report> reports, Report& whole,
+                  Summary&) { return change(meshes, reports, whole); };
+    return reshape(app, request, without_lines, measuring, options, max_triangles, with_conditions);
+}
+
+ExitCode reshape(const CLI::App& app, const ReshapeRequest& request, const SummarizedChange& change,
                  Measuring measuring, const Json& options, std::optional<std::size_t> max_triangles,
                  bool with_conditions) {
     const JobList list = model_jobs_of(request.words, request.format);
