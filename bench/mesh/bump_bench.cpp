@@ -42,7 +42,7 @@ struct Fields {
 
 Fields fields(int side) {
     const std::vector<HeightWave> waves = tiling_waves(side, side, 6, 32.0, 0.2, 5);
-    AnalyticHeights field = wave_heights(side, side, waves);
+    BumpField field = wave_heights(side, side, waves);
     CodedHeights coded = coded_heights(field.heights, 16);
     return {std::move(field.heights), std::move(coded.codes), coded.strength};
 }

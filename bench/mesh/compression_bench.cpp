@@ -28,7 +28,7 @@ constexpr int side = 1024;
 
 Image wave_map() {
     const std::vector<HeightWave> waves = tiling_waves(side, side, 8, 9, 0.35, 6);
-    const AnalyticHeights field = wave_heights(side, side, waves);
+    const BumpField field = wave_heights(side, side, waves);
     Image image = make_image(side, side, 3, 32, ColorSpace::data);
     for (std::size_t i = 0; i < image.sample_count(); ++i)
         image.as<float>()[i] = static_cast<float>(field.normals[i / 3][static_cast<int>(i % 3)]);

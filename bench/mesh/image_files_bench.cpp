@@ -40,8 +40,7 @@ Image normals_of(const Image& heights, double strength) {
 }
 
 std::vector<Map> made_maps(int side) {
-    const AnalyticHeights field =
-        wave_heights(side, side, tiling_waves(side, side, 40, 24.0, 0.4, 1));
+    const BumpField field = wave_heights(side, side, tiling_waves(side, side, 40, 24.0, 0.4, 1));
     std::vector<Map> maps;
     const CodedHeights words = coded_heights(field.heights, 16);
     maps.push_back({"smooth, from 16 bits", normals_of(words.codes, words.strength)});

@@ -27,7 +27,7 @@ struct Operation {
 
 Image bumpy_normals() {
     const std::vector<HeightWave> waves = tiling_waves(side, side, 4, 16, 0.5, 3);
-    const AnalyticHeights field = wave_heights(side, side, waves);
+    const BumpField field = wave_heights(side, side, waves);
     Image image = make_image(side, side, 3, 32, ColorSpace::data);
     for (std::size_t i = 0; i < image.sample_count(); ++i)
         image.as<float>()[i] = static_cast<float>(field.normals[i / 3][static_cast<int>(i % 3)]);

@@ -53,8 +53,10 @@ HeightSample evaluate_waves(std::span<const HeightWave> waves, const glm::dvec2&
 }
 
 /// Samples a field, which is called from several threads, at the texel centers.
-AnalyticHeights sampled_heights(int width, int height, const FieldFunction& field) {
-    AnalyticHeights result{make_image(width, height, 1, 32, ColorSpace::data), {}};
+BumpField sampled_heights(int width, int height, const FieldFunction& field) {
+    BumpField result;
+    result.heights = make_image(width, height, 1, 32, ColorSpace::data);
+    result.options.strength = 1.0;
     const std::span<float> heights = result.heights.as<float>();
     result.normals.resize(heights.size());
     const auto rows = static_cast<std::size_t>(height);
@@ -74,7 +76,7 @@ AnalyticHeights sampled_heights(int width, int height, const FieldFunction& fiel
 
 }  // namespace
 
-AnalyticHeights wave_heights(int width, int height, std::span<const HeightWave> waves) {
+BumpField wave_heights(int width, int height, std::span<const HeightWave> waves) {
     return sampled_heights(
         width, height, [&](const glm::dvec2& position) { return evaluate_waves(waves, position); });
 }
@@ -155,9 +157,10 @@ std::vector<float> detail::inner_angles(const Image& normals,
     const std::span<const float> all = angles.as<float>();
     std::vector<float> counted;
     for (int y = margin; y < angles.height - margin; ++y) {
-        const auto row = static_cast<std::ptrdiff_t>(y) * angles.width;
-        counted.insert(counted.end(), all.begin() + row + margin,
-                       all.begin() + row + angles.width - margin);
+        for (int x = margin; x < angles.width - margin; ++x) {
+            const std::size_t texel = texel_at(angles.width, x, y);
+            if (!std::isnan(ground_truth[texel].x)) counted.push_back(all[texel]);
+        }
     }
     return counted;
 }
@@ -167,13 +170,8 @@ ErrorStats detail::map_errors(const Image& normals, std::span<const glm::dvec3> 
     return error_stats(inner_angles(normals, ground_truth, margin));
 }
 
-ErrorStats normal_error(const Image& normals, const AnalyticHeights& reference, int margin) {
-    if (normals.width != reference.heights.width || normals.height != reference.heights.height) {
-        throw InvalidInput(fmt::format("normals of {} x {} texels and a ground truth of {} x {}",
-                                       normals.width, normals.height, reference.heights.width,
-                                       reference.heights.height));
-    }
-    return map_errors(normals, reference.normals, margin);
+ErrorStats normal_error(const Image& normals, const BumpField& field, int margin) {
+    return map_errors(normals, field.normals, margin);
 }
 
 namespace {
@@ -326,7 +324,6 @@ Image recoded(const Image& codes, int bits, int (*recode)(int)) {
 void store(Image heights, FieldCoding coding, BumpField& field) {
     if (coding == FieldCoding::float16) round_to_half(heights.as<float>());
     if (coding == FieldCoding::float32 || coding == FieldCoding::float16) {
-        field.options.strength = 1.0;
         field.heights = std::move(heights);
         return;
     }
@@ -357,12 +354,10 @@ BumpField make_bump_field(const FieldRecipe& original, int width, int height) {
             fmt::format("the field has {} x {} texels, which are too few", width, height));
     FieldRecipe recipe = original;
     recipe.shortest = std::min(recipe.shortest, 0.5 * std::max(width, height));
-    AnalyticHeights reference = sampled_heights(width, height, shape_of(width, height, recipe));
-    BumpField field;
+    BumpField field = sampled_heights(width, height, shape_of(width, height, recipe));
     field.options.wrap = recipe.shape == FieldShape::open ? Wrap::clamp : Wrap::repeat;
-    field.normals = std::move(reference.normals);
-    if (recipe.noise > 0.0) add_noise(reference.heights.as<float>(), recipe);
-    store(std::move(reference.heights), recipe.coding, field);
+    if (recipe.noise > 0.0) add_noise(field.heights.as<float>(), recipe);
+    store(std::move(field.heights), recipe.coding, field);
     return field;
 }
 
@@ -450,15 +445,6 @@ std::span<const FieldRecipe> evaluation_fields() {
         {"mixed from 10, noise 0.07, 16 bit", mixed, 10, 0.25, bits16, 0.07, 529},
     };
     return all;
-}
-
-ErrorStats field_error(const Image& normals, const BumpField& field) {
-    const std::vector<float> all = inner_angles(normals, field.normals, 0);
-    std::vector<float> degrees;
-    for (std::size_t texel = 0; texel < all.size(); ++texel) {
-        if (!std::isnan(field.normals[texel].x)) degrees.push_back(all[texel]);
-    }
-    return error_stats(std::move(degrees));
 }
 
 }  // namespace relief::accuracy

@@ -64,7 +64,7 @@ void convert_by(const BumpMethod& method, const Image& heights, const BumpOption
 
 double rms_error(const BumpField& field, Kernel kernel, int gaussian_radius) {
     const BumpMethod method{kernel, gaussian_radius, Arithmetic::float64};
-    return field_error(normals_by(method, field.heights, field.options), field).rms;
+    return normal_error(normals_by(method, field.heights, field.options), field).rms;
 }
 
 const FieldRecipe& field_recipe(const std::string& name) {
@@ -79,24 +79,18 @@ const FieldRecipe& field_recipe(const std::string& name) {
 BumpField oblique_wave(int side, double wavelength, int bits) {
     const double steepness = 2.0 * std::numbers::pi / wavelength;
     const HeightWave wave{1.0 / steepness, steepness * glm::dvec2(2.0, 1.0) / std::sqrt(5.0), 0.7};
-    AnalyticHeights field = wave_heights(side, side, std::span(&wave, 1));
-    BumpField map;
-    map.options.wrap = Wrap::clamp;
-    map.options.strength = 1.0;
-    map.normals = std::move(field.normals);
-    if (bits == 32) {
-        map.heights = std::move(field.heights);
-    } else {
-        CodedHeights coded = coded_heights(field.heights, bits);
-        map.options.strength = coded.strength;
-        map.heights = std::move(coded.codes);
-    }
-    return map;
+    BumpField field = wave_heights(side, side, std::span(&wave, 1));
+    field.options.wrap = Wrap::clamp;
+    if (bits == 32) return field;
+    CodedHeights coded = coded_heights(field.heights, bits);
+    field.options.strength = coded.strength;
+    field.heights = std::move(coded.codes);
+    return field;
 }
 
 ErrorStats wave_errors(const BumpField& wave, const BumpMethod& method) {
     const int margin = wave.options.wrap == Wraps(Wrap::repeat) ? 0 : wave_margin;
-    return map_errors(normals_by(method, wave.heights, wave.options), wave.normals, margin);
+    return normal_error(normals_by(method, wave.heights, wave.options), wave, margin);
 }
 
 BumpField surface_at(int side) {
@@ -108,12 +102,7 @@ BumpField surface_at(int side) {
         wave.frequency /= scale;
         wave.amplitude *= scale;
     }
-    AnalyticHeights field = wave_heights(side, side, waves);
-    BumpField map;
-    map.heights = std::move(field.heights);
-    map.options.strength = 1.0;
-    map.normals = std::move(field.normals);
-    return map;
+    return wave_heights(side, side, waves);
 }
 
 namespace {
@@ -247,7 +236,7 @@ ErrorStats conversion_error(const BumpField& field, const BumpMethod& method) {
     Report report;
     Image map;
     convert_by(method, field.heights, field.options, map);
-    return map_errors(decode_normal_map(map, format.green, format.flat, report), field.normals);
+    return normal_error(decode_normal_map(map, format.green, format.flat, report), field);
 }
 
 PreparedExperiment on_recipe(const FieldRecipe& recipe, int side) {

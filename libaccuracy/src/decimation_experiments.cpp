@@ -44,7 +44,8 @@ std::vector<TriangleSample> area_samples(const Mesh& mesh, std::size_t count) {
             c = 1.0 - c;
         }
         const glm::uvec3& triangle = mesh.triangles[t];
-        samples.push_back({(1.0 - b - c) * glm::dvec3(mesh.positions[triangle.x]) +
+        samples.push_back({t,
+                           (1.0 - b - c) * glm::dvec3(mesh.positions[triangle.x]) +
                                b * glm::dvec3(mesh.positions[triangle.y]) +
                                c * glm::dvec3(mesh.positions[triangle.z]),
                            cross_of(triangle)});

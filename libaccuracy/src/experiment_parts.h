@@ -319,7 +319,8 @@ std::vector<glm::dvec3> directions_of(const Image& normals);
 /// \throws InvalidInput if the counts differ
 Image angles_of(const Image& normals, std::span<const glm::dvec3> ground_truth);
 
-/// The angles of angles_of() as a list, without those within `margin` texels of the border.
+/// The angles of angles_of() as a list, without those within `margin` texels of the border and
+/// those without ground truth.
 std::vector<float> inner_angles(const Image& normals, std::span<const glm::dvec3> ground_truth,
                                 int margin);
 
@@ -431,6 +432,7 @@ std::vector<TexturedCase> textured_cases();
 
 /// A point of a triangle.
 struct TriangleSample {
+    std::size_t triangle;
     glm::dvec3 position;
     glm::dvec3 normal;  ///< Of the triangle; not unit.
 };

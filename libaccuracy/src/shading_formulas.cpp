@@ -29,36 +29,27 @@ ErrorStats formula_error(const FormulaMethod& method, std::span<const double> gr
 
 namespace {
 
-/// Methods that are timed on one thread; the time is that of all inputs. The ids are indices.
+/// Methods that are timed on one thread; the time is that of all inputs.
 /// \param inputs  owns what the methods refer to
-PreparedExperiment formula_experiment(Experiment report, std::shared_ptr<const void> inputs,
-                                      std::vector<FormulaMethod> methods,
-                                      std::vector<double> ground_truth) {
+PreparedExperiment formula_experiment(Experiment report, const std::shared_ptr<const void>& inputs,
+                                      const std::vector<FormulaMethod>& methods,
+                                      const std::vector<double>& ground_truth) {
     struct State {
         std::shared_ptr<const void> inputs;
-        std::vector<FormulaMethod> methods;
-        std::vector<double> ground_truth;
         std::vector<float> results;
+        std::span<float> to = results;
     };
-    const auto state = std::make_shared<State>(
-        State{std::move(inputs), std::move(methods), std::move(ground_truth), {}});
-    state->results.resize(state->ground_truth.size());
+    const auto state =
+        std::make_shared<State>(State{inputs, std::vector<float>(ground_truth.size())});
     PreparedExperiment prepared;
     prepared.report = std::move(report);
     prepared.costs = {.all_threads = false, .memory = false};
-    for (std::size_t i = 0; i < state->methods.size(); ++i) {
-        prepared.methods.push_back(
-            {.name = state->methods[i].name,
-             .choices = state->methods[i].choices,
-             .error = [state, i] { return formula_error(state->methods[i], state->ground_truth); },
-             .work = [state, i] { state->methods[i].compute(state->results); }});
-    }
+    prepared.methods = methods_on(std::shared_ptr<const std::span<float>>(state, &state->to),
+                                  methods, [state, ground_truth](const FormulaMethod& method) {
+                                      return formula_error(method, ground_truth);
+                                  });
     return prepared;
 }
-
-}  // namespace
-
-namespace {
 
 /// A method that evaluates a formula of one cosine for each input.
 template <typename Formula>

@@ -345,11 +345,8 @@ Chart patches_chart(const Image& ground_truth, const std::vector<NormalCode>& co
 
 PreparedExperiment normal_reading_experiment(const PlanOptions& options) {
     const int side = options.is_quick ? 128 : 512;
-    // The upper half, which a map in tangent space can represent.
-    std::vector<glm::dvec3> directions =
-        even_directions(2 * static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
-    directions.resize(directions.size() / 2);
-    const auto input = std::make_shared<const ExactTexels>(std::move(directions), side);
+    const auto texels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+    const auto input = std::make_shared<const ExactTexels>(upper_directions(texels), side);
     PreparedExperiment prepared = code_experiment(
         {.question = "What is the error of a stored normal, by layout and bits?",
          .ground_truth =
@@ -406,6 +403,12 @@ std::vector<glm::dvec3> even_directions(std::size_t count) {
         const double radius = std::sqrt(1.0 - z * z);
         directions.emplace_back(radius * portable::cos(turn), radius * portable::sin(turn), z);
     }
+    return directions;
+}
+
+std::vector<glm::dvec3> upper_directions(std::size_t count) {
+    std::vector<glm::dvec3> directions = even_directions(2 * count);
+    directions.resize(count);
     return directions;
 }
 

@@ -67,6 +67,10 @@ SampleFrames sample_frames(std::span<const glm::dvec3> normals,
 /// Directions on a spiral of equal areas from (0, 0, 1) to (0, 0, -1).
 std::vector<glm::dvec3> even_directions(std::size_t count);
 
+/// Directions that are spread evenly over the half sphere above a surface, which a map in tangent
+/// space can represent.
+std::vector<glm::dvec3> upper_directions(std::size_t count);
+
 /// Frames at even_directions(); the tangents rotate around the normals in another rhythm.
 SampleFrames even_frames(std::size_t count);
 

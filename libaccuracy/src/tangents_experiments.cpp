@@ -263,13 +263,10 @@ constexpr std::array frame_choices = {FrameChoice{"stored", TangentFrame::stored
 /// Waves of at least a quarter of the map, so that its smaller mip levels lose nothing.
 Image wavy_normals() {
     constexpr int side = 64;
-    const AnalyticHeights field =
-        wave_heights(side, side, tiling_waves(side, side, 12, side / 4.0, 0.5, 1));
+    BumpField field = wave_heights(side, side, tiling_waves(side, side, 12, side / 4.0, 0.5, 1));
+    field.options.wrap = Wrap::repeat;
     Report report;
-    BumpOptions bump;
-    bump.strength = 1.0;
-    bump.wrap = Wrap::repeat;
-    return normal_map_from_height(field.heights, bump, {.bits = 8}, report);
+    return normal_map_from_height(field.heights, field.options, {.bits = 8}, report);
 }
 
 /// Repeats the texture so that texels are square halfway between the inner and outer equator.

@@ -12,6 +12,7 @@
 #include <memory>
 #include <numbers>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "portable_math.h"
@@ -19,19 +20,6 @@
 
 namespace relief::accuracy::detail {
 using namespace relief::detail;
-
-namespace {
-
-/// Returns a number whose distribution is close to the normal one, of mean 0 and deviation 1.
-double normal_number(std::uint32_t seed) {
-    Random random(seed);
-    double sum = -6.0;
-    for (int i = 0; i < 12; ++i)
-        sum += random.between(0.0, 1.0);
-    return sum;
-}
-
-}  // namespace
 
 Mesh wavy_sphere(int cells, double noise) {
     const auto n = static_cast<std::uint32_t>(cells);
@@ -51,7 +39,7 @@ Mesh wavy_sphere(int cells, double noise) {
         };
         const std::uint32_t seed = place.x + (place.y << 10) + (place.z << 20);
         const double radius = 1.0 + 0.08 * waves({7, 6, 8}, {1, 2, 0.5}) +
-                              0.03 * waves({23, 19, 21}, {0, 1, 2}) + noise * normal_number(seed);
+                              0.03 * waves({23, 19, 21}, {0, 1, 2}) + noise * Random(seed).normal();
         return glm::vec3(radius * p);
     };
     Mesh mesh;
@@ -131,12 +119,11 @@ Mesh gear_wheel(int teeth, int cells) {
 ErrorStats stretch_errors(const Mesh& mesh, std::span<const glm::vec2> corner_texcoords,
                           const glm::ivec2& size) {
     constexpr std::size_t count = 20'000;
-    struct Triangle {
-        double end = 0.0;  ///< The sum of the areas up to here.
+    struct Stretch {
         double largest = 0.0;
         double smallest = 0.0;  ///< Singular values, texels per unit.
     };
-    std::vector<Triangle> triangles;
+    std::vector<Stretch> triangles(mesh.triangles.size());
     double area = 0.0;
     double texels = 0.0;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -160,16 +147,12 @@ ErrorStats stretch_errors(const Mesh& mesh, std::span<const glm::vec2> corner_te
         const double difference = std::sqrt(std::max(squares - 2.0 * product, 0.0));
         area += 0.5 * length * height;
         texels += 0.5 * length * height * product;
-        triangles.push_back({area, 0.5 * (sum + difference), 0.5 * (sum - difference)});
+        triangles[t] = {0.5 * (sum + difference), 0.5 * (sum - difference)};
     }
     const double density = std::sqrt(texels / area);
     std::vector<float> errors;
-    std::size_t t = 0;
-    for (std::size_t i = 0; i < count && !triangles.empty(); ++i) {
-        const double place = (static_cast<double>(i) + 0.5) / static_cast<double>(count) * area;
-        while (t + 1 < triangles.size() && triangles[t].end < place)
-            ++t;
-        const Triangle& one = triangles[t];
+    for (const TriangleSample& sample : area_samples(mesh, count)) {
+        const Stretch& one = triangles[sample.triangle];
         const double factor = one.smallest > 0.0
                                   ? std::max(one.largest / density, density / one.smallest)
                                   : std::numeric_limits<double>::quiet_NaN();
@@ -180,49 +163,58 @@ ErrorStats stretch_errors(const Mesh& mesh, std::span<const glm::vec2> corner_te
 
 namespace {
 
-/// A choice of options.
+/// The options of a method.
 struct UnwrappingMethod {
     std::string name;
     std::string options_text;  ///< Of relief-mesh unwrap.
     UnwrapOptions options;
-    bool needs_texcoords = false;
+
+    [[nodiscard]] bool needs_texcoords() const { return options.repack || options.keep_seams; }
 };
 
+UnwrapOptions usual_options(int size) {
+    UnwrapOptions options;
+    options.size = glm::ivec2(size);
+    return options;
+}
+
+/// Returns the usual options with one member changed.
+template <typename Value>
+UnwrapOptions with(UnwrapOptions options, Value UnwrapOptions::*member,
+                   const std::type_identity_t<Value>& value) {
+    options.*member = value;
+    return options;
+}
+
 std::vector<UnwrappingMethod> chart_methods(int size) {
-    UnwrapOptions usual;
-    usual.size = glm::ivec2(size);
-    std::vector<UnwrappingMethod> methods = {{"existing charts", "--repack", usual, true},
-                                             {"default", "none", usual},
-                                             {"keep seams", "--keep-seams", usual, true},
-                                             {"conformal", "--flatten conformal", usual},
-                                             {"split hard edges", "--split-hard 30", usual}};
-    methods[0].options.repack = true;
-    methods[2].options.keep_seams = true;
-    methods[3].options.flattening = Flattening::conformal;
-    methods[4].options.split_hard = std::numbers::pi / 6.0;
+    using Options = UnwrapOptions;
+    const Options usual = usual_options(size);
+    std::vector<UnwrappingMethod> methods = {
+        {"existing charts", "--repack", with(usual, &Options::repack, true)},
+        {"default", "none", usual},
+        {"keep seams", "--keep-seams", with(usual, &Options::keep_seams, true)},
+        {"conformal", "--flatten conformal",
+         with(usual, &Options::flattening, Flattening::conformal)},
+        {"split hard edges", "--split-hard 30",
+         with(usual, &Options::split_hard, std::numbers::pi / 6.0)}};
     for (const double limit : {1.5, 1.2, 1.1}) {
-        methods.push_back(
-            {fmt::format("within {}", limit), fmt::format("--max-stretch {}", limit), usual});
-        methods.back().options.max_stretch = limit;
+        methods.push_back({fmt::format("within {}", limit), fmt::format("--max-stretch {}", limit),
+                           with(usual, &Options::max_stretch, limit)});
     }
     return methods;
 }
 
 std::vector<UnwrappingMethod> packing_methods(int size) {
-    UnwrapOptions usual;
-    usual.size = glm::ivec2(size);
+    using Options = UnwrapOptions;
+    const Options usual = usual_options(size);
     std::vector<UnwrappingMethod> methods;
     for (const int padding : {0, 2, 4, 8, 16}) {
-        methods.push_back(
-            {fmt::format("padding {}", padding), fmt::format("--padding {}", padding), usual});
-        methods.back().options.padding = padding;
+        methods.push_back({fmt::format("padding {}", padding), fmt::format("--padding {}", padding),
+                           with(usual, &Options::padding, padding)});
     }
-    methods.push_back({"padding 4, blocks of 4", "--align 4", usual});
-    methods.back().options.alignment = 4;
-    methods.push_back(
-        {"padding 4, four tiles", fmt::format("--size {} --udim 4", size / 2), usual});
-    methods.back().options.size /= 2;
-    methods.back().options.tiles = 4;
+    methods.push_back({"padding 4, blocks of 4", "--align 4", with(usual, &Options::alignment, 4)});
+    methods.push_back({"padding 4, four tiles", fmt::format("--size {} --udim 4", size / 2),
+                       with(usual_options(size / 2), &Options::tiles, 4)});
     return methods;
 }
 
@@ -234,34 +226,42 @@ std::string note_on(const AtlasStats& stats) {
         stats.relative_seam_length, stats.mean_anisotropy);
 }
 
-/// Sets all but the errors and the work of methods.
-PreparedExperiment unwrapping_of(const Mesh& mesh, const std::string& description, int size) {
-    PreparedExperiment prepared;
-    prepared.report.input = fmt::format("{}, {} triangles, for {} x {} texels", description,
-                                        mesh.triangles.size(), size, size);
-    prepared.report.error_unit = "%";
-    prepared.report.item = "triangle";
-    prepared.report.items = static_cast<double>(mesh.triangles.size());
-    prepared.costs.memory = false;
-    return prepared;
+/// The quantity that an error of an unwrapping measures.
+enum class UnwrappingError { stretch, unused_texels };
+
+ErrorStats error_of(const Unwrapped& result, const Mesh& mesh, const UnwrapOptions& options,
+                    UnwrappingError kind) {
+    if (kind == UnwrappingError::stretch)
+        return stretch_errors(mesh, result.corner_texcoords, options.size);
+    return error_stats({static_cast<float>(100.0 * (1.0 - result.stats.used))});
 }
 
-void add_unwrapping(PreparedExperiment& prepared, const std::shared_ptr<const Mesh>& mesh,
-                    const UnwrappingMethod& method, bool measures_stretch) {
-    prepared.methods.push_back(
-        {.name = method.name,
-         .choices = {{"options", method.options_text}},
-         .error =
-             [mesh, method, measures_stretch] {
-                 const Unwrapped result = unwrap(*mesh, method.options);
-                 const auto unused = static_cast<float>(100.0 * (1.0 - result.stats.used));
-                 return MethodError(
-                     measures_stretch
-                         ? stretch_errors(*mesh, result.corner_texcoords, method.options.size)
-                         : error_stats({unused}),
-                     note_on(result.stats));
-             },
-         .work = [mesh, method] { unwrap(*mesh, method.options); }});
+/// Methods that a mesh permits, without the question and the ground truth.
+PreparedExperiment unwrapping_of(const std::shared_ptr<const Mesh>& mesh,
+                                 const std::string& description, int size,
+                                 const std::vector<UnwrappingMethod>& methods,
+                                 UnwrappingError kind) {
+    PreparedExperiment prepared;
+    prepared.report.input = fmt::format("{}, {} triangles, for {} x {} texels", description,
+                                        mesh->triangles.size(), size, size);
+    prepared.report.error_unit = "%";
+    prepared.report.item = "triangle";
+    prepared.report.items = static_cast<double>(mesh->triangles.size());
+    prepared.costs.memory = false;
+    for (const UnwrappingMethod& method : methods) {
+        if (method.needs_texcoords() && mesh->texcoords.empty()) continue;
+        prepared.methods.push_back(
+            {.name = method.name,
+             .choices = {{"options", method.options_text}},
+             .error =
+                 [=, options = method.options] {
+                     const Unwrapped result = unwrap(*mesh, options);
+                     return MethodError(error_of(result, *mesh, options, kind),
+                                        note_on(result.stats));
+                 },
+             .work = [mesh, options = method.options] { unwrap(*mesh, options); }});
+    }
+    return prepared;
 }
 
 /// The unused texels and the part of them that the padding takes, over the padding.
@@ -272,10 +272,8 @@ Chart padding_chart(const Mesh& mesh, int size) {
                 .y_label = "texels that charts do not cover, %",
                 .curves = {{.method = "unused"}, {.method = "padding alone"}}};
     for (const int padding : {1, 2, 4, 8, 16}) {
-        UnwrapOptions options;
-        options.size = glm::ivec2(size);
-        options.padding = padding;
-        const AtlasStats stats = unwrap(mesh, options).stats;
+        const AtlasStats stats =
+            unwrap(mesh, with(usual_options(size), &UnwrapOptions::padding, padding)).stats;
         chart.curves[0].points.push_back({1.0 * padding, 100.0 * (1.0 - stats.used)});
         chart.curves[1].points.push_back(
             {1.0 * padding, 100.0 * stats.padding_share.value_or(0.0)});
@@ -285,13 +283,12 @@ Chart padding_chart(const Mesh& mesh, int size) {
 
 PreparedExperiment unwrapping_texels(Mesh given, const std::string& description, int size) {
     const auto mesh = std::make_shared<const Mesh>(std::move(given));
-    PreparedExperiment prepared = unwrapping_of(*mesh, description, size);
+    PreparedExperiment prepared = unwrapping_of(mesh, description, size, packing_methods(size),
+                                                UnwrappingError::unused_texels);
     prepared.report.question = "How many texels of the map stay unused?";
     prepared.report.ground_truth =
         "A map that charts cover completely. Tests compare the covered area with the sum of the "
         "areas of all triangles, which do not overlap.";
-    for (const UnwrappingMethod& method : packing_methods(size))
-        add_unwrapping(prepared, mesh, method, false);
     prepared.finish = [mesh, size](Experiment& report) {
         report.charts = {padding_chart(*mesh, size)};
     };
@@ -301,14 +298,16 @@ PreparedExperiment unwrapping_texels(Mesh given, const std::string& description,
 PreparedExperiment unwrapping_of_large_mesh(const PlanOptions& options) {
     const int size = options.is_quick ? 512 : 2048;
     const auto mesh = std::make_shared<const Mesh>(wavy_sphere(options.is_quick ? 32 : 289, 0.0));
-    PreparedExperiment prepared = unwrapping_of(*mesh, "sphere with waves", size);
+    std::vector<UnwrappingMethod> methods = chart_methods(size);
+    std::erase_if(methods, [](const UnwrappingMethod& method) {
+        return method.name != "default" && method.name != "keep seams";
+    });
+    PreparedExperiment prepared =
+        unwrapping_of(mesh, "sphere with waves", size, methods, UnwrappingError::stretch);
     prepared.report.question = "How much time and memory does the unwrapping of a large mesh cost?";
     prepared.report.ground_truth =
         "The same lengths on the surface, at the mean density of texels.";
     prepared.costs.memory = true;
-    for (const UnwrappingMethod& method : chart_methods(size))
-        if (method.name == "default" || method.name == "keep seams")
-            add_unwrapping(prepared, mesh, method, true);
     return prepared;
 }
 
@@ -316,15 +315,13 @@ PreparedExperiment unwrapping_of_large_mesh(const PlanOptions& options) {
 
 PreparedExperiment unwrapping_stretch(Mesh given, const std::string& description, int size) {
     const auto mesh = std::make_shared<const Mesh>(std::move(given));
-    PreparedExperiment prepared = unwrapping_of(*mesh, description, size);
+    PreparedExperiment prepared =
+        unwrapping_of(mesh, description, size, chart_methods(size), UnwrappingError::stretch);
     prepared.report.question = "Which options stretch the surface least, and what do they cost?";
     prepared.report.ground_truth =
         "The same lengths on the surface, at the mean density of texels. The error is how much "
         "longer or shorter a line becomes in the map at most, at points that are spread evenly "
         "over the surface. Tests verify it for maps with a known stretch.";
-    for (const UnwrappingMethod& method : chart_methods(size))
-        if (!method.needs_texcoords || !mesh->texcoords.empty())
-            add_unwrapping(prepared, mesh, method, true);
     return prepared;
 }
 

@@ -36,22 +36,23 @@ using testing::StartsWith;
 const AssetOptions untimed_map = test::untimed_asset("map.png");
 
 BumpField waves(FieldCoding coding) {
-    FieldRecipe recipe;
-    recipe.shape = FieldShape::waves;
-    recipe.shortest = 16.0;
-    recipe.coding = coding;
-    return make_bump_field(recipe, 96, 96);
+    return make_bump_field({.shortest = 16.0, .coding = coding}, 96, 96);
+}
+
+/// The experiment of one method on a field, without times.
+BumpExperiment measured_by(const BumpMethod& method, const BumpField& field) {
+    BumpExperimentOptions how;
+    how.bump = field.options;
+    how.repeats = {0, 0};
+    return measure_bump(sample_of(field.heights), std::span(&method, 1), how);
 }
 
 TEST(AssetHeights, AreThoseOfTheBumpExperiment) {
     const BumpField field = waves(FieldCoding::float32);
     const AssetExperiment own = measure_asset_heights(field.heights, field.options, untimed_map);
     EXPECT_THAT(own.experiment.measurements, SizeIs(60));  // Kernels x arithmetics x depths.
-    BumpExperimentOptions how;
-    how.bump = field.options;
-    how.repeats = {0, 0};
-    const BumpMethod method{Kernel::sobel3, 2, Arithmetic::float32, 8, false};
-    const BumpExperiment same = measure_bump(sample_of(field.heights), std::span(&method, 1), how);
+    const BumpExperiment same =
+        measured_by({Kernel::sobel3, 2, Arithmetic::float32, 8, false}, field);
     EXPECT_EQ(found(own, "sobel3, float32, 8 bit").error, same.measurements[0].error);
     // Smooth waves in floats: the kernel of the highest order, in double, is the reference.
     EXPECT_THAT(own.recommendation.description, HasSubstr("central7, float64, 32 bit: "));
@@ -66,12 +67,8 @@ TEST(AssetHeights, AreThoseOfTheBumpExperiment) {
 
 /// Waves in 8 bits with noise: the map itself has an error of several degrees.
 BumpField noisy_waves() {
-    FieldRecipe recipe;
-    recipe.shape = FieldShape::waves;
-    recipe.shortest = 16.0;
-    recipe.coding = FieldCoding::bits8;
-    recipe.noise = 0.1;
-    return make_bump_field(recipe, 128, 128);
+    return make_bump_field({.shortest = 16.0, .coding = FieldCoding::bits8, .noise = 0.1}, 128,
+                           128);
 }
 
 TEST(AssetHeights, AreHeldToABoundWithTheErrorOfTheMapItself) {
@@ -94,12 +91,7 @@ TEST(AssetHeights, AreHeldToABoundWithTheErrorOfTheMapItself) {
 TEST(AssetHeights, HaveTheRangeOfTheBumpExperiment) {
     const BumpField field = noisy_waves();
     const AssetExperiment own = measure_asset_heights(field.heights, field.options, untimed_map);
-    BumpExperimentOptions how;
-    how.bump = field.options;
-    how.repeats = {0, 0};
-    const BumpMethod method;
-    const BumpReference reference =
-        measure_bump(sample_of(field.heights), std::span(&method, 1), how).reference;
+    const BumpReference reference = measured_by({}, field).reference;
     ASSERT_GT(reference.upper_error.rms, 1.5 * reference.error.rms) << "noise hides detail";
     EXPECT_EQ(own.experiment.reference_error_upper, reference.upper_error.rms);
     EXPECT_THAT(own.recommendation.description,
@@ -155,11 +147,8 @@ TEST(AssetMaps, WithLossyCompressionHaveAnUnknownError) {
 }
 
 TEST(AssetNormalMaps, AreComparedWithTheFile) {
-    Report report;
-    NormalMapFormat format;
-    format.bits = 8;
-    const Image map = encode_normal_map(normals_of(waves(FieldCoding::float32)), format, report);
-    const Image normals = decode_normal_map(map, Green::up, FlatCode::half, report);
+    const Image map = encode_normal_map(normals_of(waves(FieldCoding::float32)), {.bits = 8});
+    const Image normals = decode_normal_map(map, Green::up, FlatCode::half);
     const AssetExperiment own = measure_asset_normals(normals, {.bits = 8}, untimed_map);
     EXPECT_LE(found(own, "xyz float").error.max, 1e-4);
     // Vectors are normalized before they are encoded again, so not all codes stay.
@@ -201,13 +190,6 @@ TEST(AssetNormalMaps, UnsuitableCodesHaveTheExpectedError) {
     for (const char* whole : {"xyz 16 bit", "octahedral 2 x 16 bit", "xyz float"})
         EXPECT_LT(found(own, whole).error.max, 0.01) << whole;
     EXPECT_THAT(own.recommendation.description, Not(HasSubstr("xy 16 bit")));
-}
-
-TEST(BumpWords, AreThoseOfTheTools) {
-    EXPECT_STREQ(enum_name(Kernel::forward), "forward");
-    EXPECT_STREQ(enum_name(Kernel::gaussian), "gaussian");
-    EXPECT_EQ(name_of(Wraps(Wrap::mirror)), "mirror");
-    EXPECT_EQ(name_of(Wraps(Wrap::repeat, Wrap::clamp)), "repeat,clamp");
 }
 
 /// Waves over the unit square, several per texel of a map of 32 x 32.

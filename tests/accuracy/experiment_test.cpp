@@ -24,8 +24,10 @@ using namespace relief::accuracy;
 namespace {
 
 using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::vector<bool> of(std::vector<MethodCost> prices) {
@@ -33,7 +35,7 @@ std::vector<bool> of(std::vector<MethodCost> prices) {
 }
 
 TEST(Frontier, ExcludesUnknownResults) {
-    EXPECT_THAT(of({{unknown, 0.0}, {0.0, unknown}, {1.0, 1.0}}), ElementsAre(false, false, true));
+    EXPECT_THAT(of({{nan, 0.0}, {0.0, nan}, {1.0, 1.0}}), ElementsAre(false, false, true));
     EXPECT_THAT(of({{infinity, 0.5}, {1.0, 1.0}}), ElementsAre(true, true));
 }
 
@@ -112,7 +114,7 @@ TEST(FittedOrder, IsThePowerOfAPowerLaw) {
         points.push_back({x, 3.0 * std::pow(x, -4.0)});
     EXPECT_NEAR(fitted_order(points).value(), -4.0, 1e-12);
     points.push_back({128.0, 0.0});  // It has no logarithm.
-    points.push_back({256.0, std::numeric_limits<double>::quiet_NaN()});
+    points.push_back({256.0, nan});
     EXPECT_NEAR(fitted_order(points).value(), -4.0, 1e-12);
 }
 
@@ -127,8 +129,7 @@ TEST(NanIfEmpty, DistinguishesNoErrorFromZero) {
     EXPECT_EQ(none.count, 0U);
     for (const double figure : {none.rms, none.mean, none.p99, none.max})
         EXPECT_TRUE(std::isnan(figure));
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    const ErrorStats undefined = nan_if_empty(error_stats({nan, nan}));
+    const ErrorStats undefined = nan_if_empty(error_stats({NAN, NAN}));
     EXPECT_EQ(undefined.undefined, 2U);
     EXPECT_TRUE(std::isnan(undefined.rms));
     EXPECT_EQ(nan_if_empty(error_stats({0.0F})).rms, 0.0);
@@ -145,15 +146,9 @@ TEST(NanIfEmpty, DistinguishesNoErrorFromZero) {
 
 TEST(CurveError, IsNaNIfOneResultIsUndefined) {
     EXPECT_EQ(curve_error(error_stats({3.0F, 4.0F, 0.0F, 0.0F})), 2.5);
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_TRUE(std::isnan(curve_error(error_stats({3.0F, nan}))));
+    EXPECT_TRUE(std::isnan(curve_error(error_stats({3.0F, NAN}))));
     EXPECT_TRUE(std::isnan(curve_error(error_stats({}))));
 }
-
-using testing::IsEmpty;
-using testing::SizeIs;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Methods of 2 s in the old run, and of so many times that in the new one. Fastest rounds alone
 /// count.
@@ -288,6 +283,12 @@ Experiment one_measurement(const ErrorStats& error) {
     return experiment;
 }
 
+/// Adds a chart with one curve.
+void add_curve(Experiment& experiment, const std::string& chart, const std::string& method,
+               const std::vector<CurvePoint>& points) {
+    experiment.charts.push_back({.id = chart, .curves = {{.method = method, .points = points}}});
+}
+
 TEST(CompareReports, ErrorsCountBeyondRounding) {
     const ErrorStats before{.count = 100, .rms = 0.1, .mean = 0.05, .p99 = 0.2, .max = 0.3};
     ErrorStats rounded = before;
@@ -325,8 +326,7 @@ TEST(CompareReports, ResultsThatBecameUnusableAreEndlessGrowth) {
 
 TEST(CompareReports, CurvesAreComparedPointByPoint) {
     Experiment before = one_measurement({});
-    before.charts.push_back({"scale", "", "", "", true, {}, {{"naive", {}, {}, {}, {}}}});
-    before.charts[0].curves[0].points = {{1e-12, nan}, {1e-6, 0.5}, {1.0, 0.1}};
+    add_curve(before, "scale", "naive", {{1e-12, nan}, {1e-6, 0.5}, {1.0, 0.1}});
     Experiment after = before;
     after.charts[0].curves[0].points = {{1e-6, nan}, {1.0, 0.1}, {10.0, 0.1}};
     const ReportComparison result = compare_reports({before}, {after});
@@ -339,8 +339,7 @@ TEST(CompareReports, CurvesAreComparedPointByPoint) {
 
 TEST(CompareReports, PointsOfACurveMatchByIndex) {
     Experiment before = one_measurement({});
-    before.charts.push_back({"angle", "", "", "", false, {}, {{"fit", {}, {}, {}, {}}}});
-    before.charts[0].curves[0].points = {{-1.0, 0.5}, {0.0, 0.1}, {1e-30, 0.2}, {1.0, 0.3}};
+    add_curve(before, "angle", "fit", {{-1.0, 0.5}, {0.0, 0.1}, {1e-30, 0.2}, {1.0, 0.3}});
     EXPECT_THAT(compare_reports({before}, {before}).errors, IsEmpty());
     Experiment after = before;
     after.charts[0].curves[0].points[1].error = 0.4;
@@ -352,9 +351,8 @@ TEST(CompareReports, PointsOfACurveMatchByIndex) {
 
 TEST(CompareReports, CurvesAndPointsWithoutAPartnerAreListed) {
     Experiment before = one_measurement({});
-    before.charts.push_back({"scale", "", "", "", true, {}, {{"naive", {}, {}, {}, {}}}});
-    before.charts[0].curves[0].points = {{1.0, 0.1}, {10.0, 0.2}};
-    before.charts.push_back({"offset", "", "", "", true, {}, {{"naive", {}, {}, {}, {}}}});
+    add_curve(before, "scale", "naive", {{1.0, 0.1}, {10.0, 0.2}});
+    add_curve(before, "offset", "naive", {});
     Experiment after = before;
     after.charts.pop_back();
     after.charts[0].curves[0].points = {{1.0, 0.1}, {100.0, 0.3}};

@@ -137,7 +137,7 @@ TEST(CubicFan, IsClosedAroundTheOriginAndLevelThere) {
     EXPECT_THROW(cubic_fan(2, 0), InvalidInput);
 }
 
-TEST(AnalyticHeights, TilingWavesRepeatAndHaveTheSlopeAskedFor) {
+TEST(WaveHeights, TilingWavesRepeatAndHaveTheSlopeAskedFor) {
     const std::vector<HeightWave> waves = tiling_waves(96, 160, 40, 8.0, 0.3, 7);
     ASSERT_EQ(waves.size(), 40U);
     for (const HeightWave& wave : waves) {
@@ -147,7 +147,7 @@ TEST(AnalyticHeights, TilingWavesRepeatAndHaveTheSlopeAskedFor) {
         EXPECT_NEAR(across, std::round(across), 1e-9);
         EXPECT_NEAR(along, std::round(along), 1e-9);
     }
-    const AnalyticHeights field = wave_heights(96, 160, waves);
+    const BumpField field = wave_heights(96, 160, waves);
     double squares = 0.0;
     for (const glm::dvec3& n : field.normals)
         squares += (n.x * n.x + n.y * n.y) / (n.z * n.z);
@@ -158,7 +158,7 @@ TEST(AnalyticHeights, TilingWavesRepeatAndHaveTheSlopeAskedFor) {
     EXPECT_THROW(tiling_waves(8, 8, 0, 4.0, 0.3, 1), InvalidInput);
 }
 
-TEST(AnalyticHeights, CodesFillTheRangeAndStrengthGivesTheTexelsBack) {
+TEST(WaveHeights, CodesFillTheRangeAndStrengthGivesTheTexelsBack) {
     Image heights = make_image(3, 1, 1, 32, ColorSpace::data);
     heights.samples = std::vector<float>{-2.0F, 0.0F, 4.0F};
     const CodedHeights coded = coded_heights(heights, 16);

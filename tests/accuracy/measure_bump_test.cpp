@@ -4,13 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "experiment_parts.h"
 #include "relief/accuracy/asset.h"
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bump.h"
@@ -20,6 +21,7 @@
 
 namespace relief {
 using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
 
 namespace {
 
@@ -33,20 +35,11 @@ FieldRecipe recipe_of(FieldShape shape, FieldCoding coding = FieldCoding::float3
 /// Returns the share of texels whose reference normal differs by more than `degrees` from finite
 /// differences.
 double share_beyond(double degrees, const BumpField& field) {
-    BumpOptions options = field.options;
-    options.kernel = Kernel::central7;
-    Report report;
-    const Image found = normals_from_height(field.heights, options, report);
-    const std::span<const float> n = found.as<float>();
-    double beyond = 0.0;
-    double all = 0.0;
-    for (std::size_t i = 0; i < field.normals.size(); ++i) {
-        if (std::isnan(field.normals[i].x)) continue;
-        all += 1.0;
-        const glm::dvec3 normal(n[3 * i], n[3 * i + 1], n[3 * i + 2]);
-        if (degrees_between(normal, field.normals[i]) > degrees) beyond += 1.0;
-    }
-    return beyond / all;
+    const Image found = normals_by({Kernel::central7}, field.heights, field.options);
+    const std::vector<float> angles = inner_angles(found, field.normals, 0);
+    const auto beyond = std::ranges::count_if(
+        angles, [&](float angle) { return static_cast<double>(angle) > degrees; });
+    return static_cast<double>(beyond) / static_cast<double>(angles.size());
 }
 
 TEST(BumpFields, TheirNormalsAreThoseOfDifferencesOfHighOrder) {
@@ -144,7 +137,7 @@ TEST(BumpFields, TheSetsHaveEveryShapeAndCodingAndAreApart) {
 TEST(BumpFields, SizesThatDoNotFitAreRefused) {
     EXPECT_THROW(make_bump_field(recipe_of(FieldShape::waves), 7, 64), InvalidInput);
     const BumpField field = make_bump_field(recipe_of(FieldShape::waves), 16, 16);
-    EXPECT_THROW(field_error(make_image(16, 15, 3, 32, ColorSpace::data), field), InvalidInput);
+    EXPECT_THROW(normal_error(make_image(16, 15, 3, 32, ColorSpace::data), field), InvalidInput);
 }
 
 constexpr int coarse_side = 96;
@@ -157,17 +150,9 @@ struct WaveError {
 
 /// Returns the error on an oblique, clamped wave of slope 1, so that both axes have an error.
 WaveError error_on(Kernel kernel, double wavelength) {
-    const double steepness = 2.0 * std::numbers::pi / wavelength;
-    const HeightWave wave{1.0 / steepness, steepness * glm::dvec2(std::cos(0.6), std::sin(0.6)),
-                          0.7};
-    const AnalyticHeights field = wave_heights(coarse_side, coarse_side, std::span(&wave, 1));
-    BumpOptions options;
-    options.kernel = kernel;
-    options.wrap = Wrap::clamp;
-    options.strength = 1.0;
-    options.arithmetic = Arithmetic::float64;
-    Report report;
-    const Image normals = normals_from_height(field.heights, options, report);
+    const BumpField field = oblique_wave(coarse_side, wavelength, 32);
+    const Image normals =
+        normals_by({kernel, 2, Arithmetic::float64}, field.heights, field.options);
     const ErrorStats all = normal_error(normals, field, 0);
     const ErrorStats but_border = normal_error(normals, field, 1);
     const auto squares = [](const ErrorStats& error) {
@@ -179,9 +164,8 @@ WaveError error_on(Kernel kernel, double wavelength) {
 }
 
 TEST(BumpConvergence, EveryKernelHasItsOrderInsideAndFirstOrderAtAClampedBorder) {
-    for (const Kernel kernel :
-         {Kernel::forward, Kernel::central3, Kernel::prewitt3, Kernel::sobel3, Kernel::scharr3,
-          Kernel::sobel5, Kernel::scharr5, Kernel::central5, Kernel::central7, Kernel::gaussian}) {
+    for (const EnumName<Kernel>& one : enum_names<Kernel>) {
+        const Kernel kernel = one.value;
         const int order = gradient_kernel(kernel).order;
         // The wavelengths end where the rounding of heights to float shows: errors of order 6
         // decrease fast.
@@ -196,14 +180,13 @@ TEST(BumpConvergence, EveryKernelHasItsOrderInsideAndFirstOrderAtAClampedBorder)
             inside.push_back({wavelength, error.inside});
             border.push_back({wavelength, error.border});
         }
-        EXPECT_NEAR(fitted_order(inside).value(), -order, 0.15 * order) << static_cast<int>(kernel);
+        EXPECT_NEAR(fitted_order(inside).value(), -order, 0.15 * order) << one.name;
         // The heights beyond the border are a reflection, whose curvature differs from that of the
         // wave.
-        EXPECT_NEAR(fitted_order(border).value(), -1.0, 0.35) << static_cast<int>(kernel);
+        EXPECT_NEAR(fitted_order(border).value(), -1.0, 0.35) << one.name;
     }
 }
 
-constexpr std::array both_arithmetics = {Arithmetic::float32, Arithmetic::float64};
 constexpr std::array all_depths = {8, 16, 32};
 constexpr std::array as_stored = {false};
 constexpr std::array both_ways = {false, true};
@@ -237,12 +220,8 @@ TEST(BumpExperiment, OnAKnownFieldTheErrorsAreThoseOfTheirMethods) {
         return measurement_of(experiment, {kernel, 4, arithmetic, bits, false}).error.rms;
     };
     // The results equal those of direct measurements.
-    BumpOptions sobel = field.options;
-    sobel.kernel = Kernel::sobel3;
-    sobel.arithmetic = Arithmetic::float64;
-    Report report;
-    EXPECT_NEAR(rms(Kernel::sobel3, Arithmetic::float64, 32),
-                field_error(normals_from_height(field.heights, sobel, report), field).rms, 1e-6);
+    EXPECT_NEAR(rms(Kernel::sobel3, Arithmetic::float64, 32), rms_error(field, Kernel::sobel3, 2),
+                1e-6);
     // 8 bits of output cost a sixth of a degree, 16 bits 250 times less.
     EXPECT_NEAR(rms(Kernel::central7, Arithmetic::float64, 8), 0.18, 0.03);
     EXPECT_NEAR(rms(Kernel::central7, Arithmetic::float64, 16), 0.0007, 0.0002);
@@ -262,12 +241,8 @@ TEST(BumpExperiment, ReferenceOfAMapIsTheMostAccurateMethod) {
     EXPECT_GT(experiment.reference.error.rms, 0.01);
     EXPECT_THAT(experiment.reference.description, HasSubstr("after smoothing its steps"));
     // The result is more accurate than the choice for the unchanged map.
-    BumpOptions plain = field.options;
-    plain.kernel = experiment.choice.kernel;
-    plain.gaussian_radius = experiment.choice.gaussian_radius;
-    Report report;
     const double of_plain =
-        field_error(normals_from_height(field.heights, plain, report), field).rms;
+        rms_error(field, experiment.choice.kernel, experiment.choice.gaussian_radius);
     const BumpExperiment known =
         measure_bump(field, std::array{*experiment.reference.method}, untimed(field));
     EXPECT_LT(known.measurements[0].error.rms, of_plain);

@@ -87,8 +87,7 @@ ErrorStats errors_by_gltf(const Image& codes, std::span<const glm::dvec3> ground
 }
 
 TEST(NormalCodes, RowsCoverBothDecoders) {
-    std::vector<glm::dvec3> directions = even_directions(2 * 256 * 256);
-    directions.resize(directions.size() / 2);
+    const std::vector<glm::dvec3> directions = upper_directions(256 * 256);
     const Image normals = image_of_normals(directions, 256);
     const auto row = [&](const char* name) {
         return map_errors(stored(code_named(name), normals), directions);
@@ -121,8 +120,7 @@ TEST(NormalCodes, ErrAsPublished) {
     // Measured by another program on random directions. The largest errors depend on the
     // directions, and if z is computed from x and y, on their distance from the horizon.
     constexpr int sheet_side = 512;
-    std::vector<glm::dvec3> directions = even_directions(2 * sheet_side * side);
-    directions.resize(directions.size() / 2);
+    const std::vector<glm::dvec3> directions = upper_directions(sheet_side * sheet_side);
     const Image normals = image_of_normals(directions, sheet_side);
     for (const Published& row : {Published{"xyz 8 bit", 0.170, 0.386},
                                  {"xyz 16 bit", 0.0007, 0.0015},
@@ -141,8 +139,7 @@ TEST(NormalCodes, ErrAsPublished) {
 
 TEST(NormalCodes, HalvesHaveTheErrorsOfTheFilesThatAreWritten) {
     // (n + 1) / 2 is in 0.5 to 1, where half floats are 2^-11 apart, so n has steps of 2^-10.
-    std::vector<glm::dvec3> directions = even_directions(2 * 256 * 256);
-    directions.resize(directions.size() / 2);
+    const std::vector<glm::dvec3> directions = upper_directions(256 * 256);
     const Image normals = image_of_normals(directions, 256);
     const ErrorStats errors = map_errors(stored(code_named("xyz half"), normals), directions);
     const std::filesystem::path file =

@@ -83,7 +83,7 @@ std::string resize_row(const Situation& at, ResizeDomain domain) {
     held = scaled_waves(held, factor);
     all = scaled_waves(all, factor);
     const Image normals = normals_image(resize_side, resize_side, all);
-    const AnalyticHeights reference =
+    const BumpField reference =
         wave_heights(at.to, at.to, resized_waves(held, static_cast<double>(resize_side) / at.to));
     std::vector<double> ranks;
     std::vector<std::string> cells;
@@ -179,7 +179,7 @@ std::string blend_row(double base_slope, double detail_slope, bool is_carved) {
     const Waves detail = detail_waves(detail_slope);
     Waves both = base;
     both.insert(both.end(), detail.begin(), detail.end());
-    AnalyticHeights reference = wave_heights(blend_side, blend_side, both);
+    BumpField reference = wave_heights(blend_side, blend_side, both);
     if (is_carved) reference.normals = carved_normals(base, detail);
     std::vector<double> ranks;
     std::vector<std::string> cells;

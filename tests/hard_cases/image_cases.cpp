@@ -167,12 +167,12 @@ HardCase staircase_case() {
               options.kernel = Kernel::sobel3;
               Report report;
               const double sobel =
-                  field_error(normals_from_height(field.heights, options, report), field).rms;
+                  normal_error(normals_from_height(field.heights, options, report), field).rms;
               const KernelChoice choice = choose_kernel(field.heights, options);
               options.kernel = choice.kernel;
               options.gaussian_radius = choice.gaussian_radius;
               const double chosen =
-                  field_error(normals_from_height(field.heights, options, report), field).rms;
+                  normal_error(normals_from_height(field.heights, options, report), field).rms;
               if (choice.kernel != Kernel::gaussian || choice.gaussian_radius < 10)
                   return choice.reason;
               return chosen < 0.1 * sobel ? "" : fmt::format("{} and {}", chosen, sobel);

@@ -88,7 +88,7 @@ inline std::vector<accuracy::HeightWave> waves_with_slope(int side, int count, d
 
 /// Returns the exact normals of a field as an image.
 inline Image normals_image(int width, int height, const std::vector<accuracy::HeightWave>& waves) {
-    const accuracy::AnalyticHeights field = accuracy::wave_heights(width, height, waves);
+    const accuracy::BumpField field = accuracy::wave_heights(width, height, waves);
     Image image = make_image(width, height, 3, 32, ColorSpace::data);
     for (std::size_t i = 0; i < image.sample_count(); ++i)
         image.as<float>()[i] = static_cast<float>(field.normals[i / 3][static_cast<int>(i % 3)]);

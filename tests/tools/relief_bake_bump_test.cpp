@@ -461,7 +461,7 @@ ErrorStats errors_of(const Workplace& workplace, const std::string& name, const 
     Report report;
     const Image normals = decode_normal_map(read_image(workplace / name, ImageUse::data), Green::up,
                                             FlatCode::half, report);
-    return field_error(normals, field);
+    return normal_error(normals, field);
 }
 
 double error_of(const Workplace& workplace, const std::string& name, const BumpField& field) {

@@ -40,7 +40,7 @@ std::vector<HeightWave> waves() {
     return tiling_waves(side, side, 8, 12, 0.5, 11);
 }
 
-AnalyticHeights ground_truth() {
+BumpField ground_truth() {
     return wave_heights(side, side, waves());
 }
 

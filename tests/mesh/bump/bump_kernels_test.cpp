@@ -409,7 +409,7 @@ TEST(BumpBorders, TexelsThatAreNotSquareScaleEachAxis) {
 }
 
 /// The steepest slope is 1; crests run across (2, 1).
-AnalyticHeights oblique_wave(double wavelength, int side) {
+BumpField oblique_wave(double wavelength, int side) {
     const double k = 2.0 * pi / wavelength;
     const HeightWave wave{1.0 / k, k * glm::normalize(glm::dvec2(2.0, 1.0)), 0.0};
     return wave_heights(side, side, std::span(&wave, 1));
@@ -418,7 +418,7 @@ AnalyticHeights oblique_wave(double wavelength, int side) {
 constexpr int margin = 4;
 
 double wave_error(Kernel kernel, double wavelength, int bits) {
-    const AnalyticHeights field = oblique_wave(wavelength, wavelength < 64.0 ? 40 : 520);
+    const BumpField field = oblique_wave(wavelength, wavelength < 64.0 ? 40 : 520);
     BumpOptions options{kernel, Wrap::clamp, 1.0};
     if (bits == 32) return normal_error(normals_from(field.heights, options), field, margin).rms;
     const CodedHeights coded = coded_heights(field.heights, bits);
@@ -493,7 +493,7 @@ TEST(BumpAccuracy, NoiseInTheHeightsComesThroughByTheKernelsGain) {
 
 TEST(BumpAccuracy, SumsOfTilingWavesTileAndTheHighOrderKernelIsBest) {
     const std::vector<HeightWave> waves = tiling_waves(128, 96, 24, 16.0, 0.4, 3);
-    const AnalyticHeights field = wave_heights(128, 96, waves);
+    const BumpField field = wave_heights(128, 96, waves);
     const auto error = [&](Kernel kernel) {
         return normal_error(normals_from(field.heights, {kernel, Wrap::repeat, 1.0}), field);
     };

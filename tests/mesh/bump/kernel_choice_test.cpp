@@ -164,7 +164,7 @@ double error_by(const BumpField& field, Kernel kernel, int radius) {
     options.gaussian_radius = radius;
     options.arithmetic = Arithmetic::float64;
     Report report;
-    return field_error(normals_from_height(field.heights, options, report), field).rms;
+    return normal_error(normals_from_height(field.heights, options, report), field).rms;
 }
 
 double min_error(const BumpField& field) {

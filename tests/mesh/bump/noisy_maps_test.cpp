@@ -225,7 +225,7 @@ double error_by(const BumpField& map, Kernel kernel, int radius) {
     options.kernel = kernel;
     options.gaussian_radius = radius;
     Report report;
-    return field_error(normals_from_height(map.heights, options, report), map).rms;
+    return normal_error(normals_from_height(map.heights, options, report), map).rms;
 }
 
 double min_error(const BumpField& map) {

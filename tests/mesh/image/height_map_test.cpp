@@ -191,7 +191,7 @@ TEST(Tiling, WavesThatTileDoAndARampDoesNot) {
 }
 
 TEST(Tiling, APartOfATilingMapDoesNotTile) {
-    const AnalyticHeights whole = wave_heights(128, 128, tiling_waves(128, 128, 12, 32.0, 0.3, 4));
+    const BumpField whole = wave_heights(128, 128, tiling_waves(128, 128, 12, 32.0, 0.3, 4));
     const Image part = heights_of(90, 128, [&](int x, int y) {
         return whole.heights.as<float>()[static_cast<std::size_t>(y * 128 + x)];
     });
@@ -299,7 +299,7 @@ ErrorStats error_by(const BumpField& field, Kernel kernel, int radius) {
     options.kernel = kernel;
     options.gaussian_radius = radius;
     Report report;
-    return field_error(normals_from_height(field.heights, options, report), field);
+    return normal_error(normals_from_height(field.heights, options, report), field);
 }
 
 /// Returns the smallest error of any kernel.

@@ -82,7 +82,7 @@ constexpr std::array kernels = {
     Kernel::forward, Kernel::central3, Kernel::prewitt3, Kernel::sobel3, Kernel::scharr3,
     Kernel::scharr5, Kernel::central5, Kernel::central7, Kernel::sobel5, Kernel::gaussian};
 
-AnalyticHeights hills(int width, int height, double shortest = 8.0) {
+BumpField hills(int width, int height, double shortest = 8.0) {
     return wave_heights(width, height, tiling_waves(width, height, 12, shortest, 0.5, 3));
 }
 
@@ -152,7 +152,7 @@ TEST(HeightsFromNormals, GiveTheNormalsBackByTheSameKernel) {
 
 TEST(HeightsFromNormals, AreThoseOfFieldsKnownInClosedForm) {
     // Exact normals, and kernels of different accuracy. In texels.
-    const AnalyticHeights field = hills(128, 96, 12.0);
+    const BumpField field = hills(128, 96, 12.0);
     Image normals = make_image(128, 96, 3, 32, ColorSpace::data);
     for (std::size_t i = 0; i < normals.sample_count(); ++i)
         normals.as<float>()[i] = static_cast<float>(field.normals[i / 3][static_cast<int>(i % 3)]);

@@ -28,15 +28,17 @@ struct HeightWave {
     double phase = 0.0;      ///< In radians.
 };
 
-/// A height field and its exact normals.
-struct AnalyticHeights {
-    Image heights;                    ///< One float channel, in texels: convert it with strength 1.
-    std::vector<glm::dvec3> normals;  ///< Unit, y up; computed before heights are rounded to float.
+/// A height map and its exact normals.
+struct BumpField {
+    Image heights;                    ///< One channel, as stored in a file.
+    BumpOptions options;              ///< The matching strength and wrap.
+    std::vector<glm::dvec3> normals;  ///< Unit, y up; NaN where the surface has none.
 };
 
-/// Samples a sum of waves at the texel centers (x, y) = (0, 0), (1, 0), ... \throws InvalidInput if
-/// a size is not positive
-AnalyticHeights wave_heights(int width, int height, std::span<const HeightWave> waves);
+/// Samples a sum of waves at the texel centers (x, y) = (0, 0), (1, 0), ... The heights are floats
+/// in texels, which have a strength of 1; the wrap is not set. \throws InvalidInput if a size is
+/// not positive
+BumpField wave_heights(int width, int height, std::span<const HeightWave> waves);
 
 /// Creates waves whose sum tiles: a whole number of periods of each wave fits into width and
 /// height.
@@ -61,12 +63,13 @@ struct CodedHeights {
 /// \throws InvalidInput if the field is empty or not one float channel, or bits is not 8 or 16
 CodedHeights coded_heights(const Image& heights, int bits);
 
-/// Computes the angles between normals and the exact normals.
+/// Computes the angles between normals and the exact normals of a field, in degrees. Texels for
+/// which the field has no normal do not count.
 ///
 /// \param normals  three float channels, of the same size
 /// \param margin  width of the border that is ignored, in texels
 /// \throws InvalidInput if the sizes differ
-ErrorStats normal_error(const Image& normals, const AnalyticHeights& reference, int margin = 0);
+ErrorStats normal_error(const Image& normals, const BumpField& field, int margin = 0);
 
 /// The shape of a field before it is stored.
 enum class FieldShape {
@@ -101,14 +104,8 @@ struct FieldRecipe {
     std::uint32_t seed = 1;
 };
 
-/// A height map and its exact normals.
-struct BumpField {
-    Image heights;                    ///< One channel, as stored in a file.
-    BumpOptions options;              ///< The matching strength and wrap.
-    std::vector<glm::dvec3> normals;  ///< Unit, y up; those of the flat ground for terraces.
-};
-
-/// Generates a field. \throws InvalidInput if a size is below 8
+/// Generates a field. Terraces have the normals of their flat ground, and none beside walls.
+/// \throws InvalidInput if a size is below 8
 BumpField make_bump_field(const FieldRecipe& recipe, int width, int height);
 
 /// Fields for tuning methods: all shapes and codings, with several noise levels and slopes.
@@ -116,9 +113,6 @@ std::span<const FieldRecipe> tuning_fields();
 
 /// Fields for evaluation, which are never used for tuning.
 std::span<const FieldRecipe> evaluation_fields();
-
-/// Computes the angles between normals and the exact normals of the field, in degrees.
-ErrorStats field_error(const Image& normals, const BumpField& field);
 
 /// Surfaces whose normals and tangents are known in closed form.
 enum class AnalyticSurface {
