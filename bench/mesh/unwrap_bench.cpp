@@ -22,7 +22,7 @@
 
 #include "bench_support.h"
 #include "experiment_parts.h"
-#include "mesh/hard_unwrap_meshes.h"
+#include "mesh/atlas/hard_unwrap_meshes.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/mesh_file.h"
 #include "relief/mesh/statistics.h"
@@ -242,7 +242,7 @@ int run(int argc, char** argv) {
         for (int i = 2; i < argc; ++i)
             inputs.emplace_back([file = std::string(argv[i])] { return model(file); });
     } else if (first == "hard") {
-        for (auto& [name, mesh] : hard_unwrap_meshes())
+        for (auto& [name, mesh] : test::hard_unwrap_meshes())
             inputs.emplace_back([input = Input{name, std::move(mesh)}] { return input; });
     } else {
         std::vector<std::size_t> sizes;

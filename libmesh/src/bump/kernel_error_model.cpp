@@ -295,11 +295,11 @@ double HeightCoding::rounding_deviation(double height) const {
 
 void KernelErrorModel::remove_blocks() {
     constexpr int bits_of_jpeg = 8;
-    if (coding_.depth.bits != bits_of_jpeg || coding_.step() == 0.0) return;
-    blocks_ = block_quantization(tiles_, coding_.step());
-    if (!blocks_) return;
+    if (map_.coding.depth.bits != bits_of_jpeg || map_.coding.step() == 0.0) return;
+    map_.blocks = block_quantization(tiles_, map_.coding.step());
+    if (!map_.blocks) return;
     for (HeightTile& tile : tiles_)
-        detail::remove_blocks(tile, *blocks_);
+        detail::remove_blocks(tile, *map_.blocks);
 }
 
 void KernelErrorModel::remove_outliers() {
@@ -308,104 +308,109 @@ void KernelErrorModel::remove_outliers() {
     std::size_t texels = 0;
     const std::vector<HeightTile> as_stored = tiles_;
     for (HeightTile& tile : tiles_) {
-        const std::vector<double> removed = detail::remove_outliers(tile, 2.5 * coding_.step());
-        outliers_.insert(outliers_.end(), removed.begin(), removed.end());
+        const std::vector<double> removed = detail::remove_outliers(tile, 2.5 * map_.coding.step());
+        map_.outliers.insert(map_.outliers.end(), removed.begin(), removed.end());
         texels += tile.values.size();
     }
-    outlier_share_ = static_cast<double>(outliers_.size()) / static_cast<double>(texels);
-    if (outlier_share_ >= min_share) return;
+    map_.outlier_share = static_cast<double>(map_.outliers.size()) / static_cast<double>(texels);
+    if (map_.outlier_share >= min_share) return;
     tiles_ = as_stored;
-    outliers_.clear();
-    outlier_share_ = 0.0;
+    map_.outliers.clear();
+    map_.outlier_share = 0.0;
 }
 
 void KernelErrorModel::detect_grain() {
-    const double rounding = root_mean_square_rounding(tiles_, coding_);
-    if (!coding_.has_exact_levels) lines_ = line_noise(tiles_, rounding);
-    if (lines_.rows > 0.0 || lines_.columns > 0.0) {
+    const double rounding = root_mean_square_rounding(tiles_, map_.coding);
+    if (!map_.coding.has_exact_levels) map_.lines = line_noise(tiles_, rounding);
+    if (map_.lines.rows > 0.0 || map_.lines.columns > 0.0) {
         tiles_with_lines_ = tiles_;
         for (HeightTile& tile : tiles_)
-            remove_line_noise(tile, lines_);
+            remove_line_noise(tile, map_.lines);
     }
     noisy_tiles_ = tiles_;
-    rounding_ = rounding;
-    high_pass_ = high_pass_noise(tiles_);
-    if (have_spectrum(tiles_)) spectrum_.emplace(tiles_);
-    white_deviation_ =
-        spectrum_ ? std::min(high_pass_.deviation, spectrum_->white_floor()) : high_pass_.deviation;
+    map_.rounding = rounding;
+    map_.high_pass = high_pass_noise(tiles_);
+    if (have_spectrum(tiles_)) map_.spectrum.emplace(tiles_);
+    map_.white_deviation = map_.spectrum
+                               ? std::min(map_.high_pass.deviation, map_.spectrum->white_floor())
+                               : map_.high_pass.deviation;
     // A small excess over rounding can be detail. Rounded planes also contain regular patterns.
-    const double min_deviation = (coding_.step() > 0.0 ? 1.1 : 1.25) * rounding;
+    const double min_deviation = (map_.coding.step() > 0.0 ? 1.1 : 1.25) * rounding;
     OctaveDeviations octaves{};
-    if (spectrum_) {
+    if (map_.spectrum) {
         octaves = octave_deviations(every_fourth(tiles_));
-        colored_noise_ = spectrum_->blurred_noise(rounding);
-        is_noise_blurred_ = colored_noise_.has_value();
-        if (!colored_noise_) colored_noise_ = spectrum_->grain();
-        max_noise_ = max_noise(octaves, high_pass_.deviation, rounding, tiles_[0].width);
+        map_.colored_noise = map_.spectrum->blurred_noise(rounding);
+        map_.is_noise_blurred = map_.colored_noise.has_value();
+        if (!map_.colored_noise) map_.colored_noise = map_.spectrum->grain();
+        map_.max_noise = max_noise(octaves, map_.high_pass.deviation, rounding, tiles_[0].width);
     }
-    if (colored_noise_ &&
-        (is_flat(*colored_noise_) || !is_stationary(*colored_noise_, octaves, rounding) ||
-         !(colored_noise_->deviation() > min_deviation)))
-        colored_noise_.reset();
+    if (map_.colored_noise &&
+        (is_flat(*map_.colored_noise) || !is_stationary(*map_.colored_noise, octaves, rounding) ||
+         !(map_.colored_noise->deviation() > min_deviation)))
+        map_.colored_noise.reset();
     // Edges can dominate the spectrum, but not the lower quantiles of the octave bands. The highest
     // band is not compared, because a blur removes most of it.
     constexpr double min_detail_ratio = 1.9;
     constexpr double min_low_ratio = 0.6;  // Blurred noise has at least as much power below.
-    if (!colored_noise_ && max_noise_ &&
-        max_noise_->deviation() > std::max(min_deviation, 1.5 * white_deviation_) &&
+    if (!map_.colored_noise && map_.max_noise &&
+        map_.max_noise->deviation() > std::max(min_deviation, 1.5 * map_.white_deviation) &&
         octaves[1] > 2.0 * rounding && octaves[2] < min_detail_ratio * octaves[1] &&
         std::min(octaves[2], octaves[3]) > min_low_ratio * octaves[1]) {
-        colored_noise_ = max_noise_;
-        is_noise_blurred_ = true;
+        map_.colored_noise = map_.max_noise;
+        map_.is_noise_blurred = true;
     }
-    if (!colored_noise_) is_noise_blurred_ = false;
-    if (colored_noise_)
-        grain_ = quadrature_difference(colored_noise_->deviation(), rounding);
-    else if (high_pass_.is_white && white_deviation_ > min_deviation &&
-             (!spectrum_ || spectrum_->ends_flat())) {
-        if (noise_by_height_) white_deviation_ = mean_deviation(*noise_by_height_, tiles_);
-        grain_ = quadrature_difference(white_deviation_, rounding);
+    if (!map_.colored_noise) map_.is_noise_blurred = false;
+    if (map_.colored_noise)
+        map_.grain = quadrature_difference(map_.colored_noise->deviation(), rounding);
+    else if (map_.high_pass.is_white && map_.white_deviation > min_deviation &&
+             (!map_.spectrum || map_.spectrum->ends_flat())) {
+        if (map_.noise_by_height)
+            map_.white_deviation = mean_deviation(*map_.noise_by_height, tiles_);
+        map_.grain = quadrature_difference(map_.white_deviation, rounding);
     }
-    if (grain_ > 0.0 && spectrum_) {
+    if (map_.grain > 0.0 && map_.spectrum) {
         const NoiseSpectrum noise =
-            colored_noise_ ? *colored_noise_ : NoiseSpectrum::white(white_deviation_);
-        is_only_grain_ = spectrum_->excess_over(noise) < max_grain_excess;
+            map_.colored_noise ? *map_.colored_noise : NoiseSpectrum::white(map_.white_deviation);
+        map_.is_only_grain = map_.spectrum->excess_over(noise) < max_grain_excess;
     }
 }
 
 void KernelErrorModel::interpret(Grain grain) {
-    stored_is_reference_ = grain == Grain::detail || (grain == Grain::automatic && is_only_grain_);
-    noise_ = stored_is_reference_ ? 0.0 : grain_;
-    if (stored_is_reference_ && !tiles_with_lines_.empty()) tiles_ = tiles_with_lines_;
+    map_.stored_is_reference =
+        grain == Grain::detail || (grain == Grain::automatic && map_.is_only_grain);
+    map_.noise = map_.stored_is_reference ? 0.0 : map_.grain;
+    if (map_.stored_is_reference && !tiles_with_lines_.empty()) tiles_ = tiles_with_lines_;
 }
 
 NoiseSpectrum KernelErrorModel::white_noise(double rounding) const {
-    double deviation = std::max(white_deviation_, rounding);
+    double deviation = std::max(map_.white_deviation, rounding);
     // The windows of the spectrum do not weight all heights alike.
-    if (noise_by_height_ && spectrum_) deviation = std::max(deviation, spectrum_->white_floor());
+    if (map_.noise_by_height && map_.spectrum)
+        deviation = std::max(deviation, map_.spectrum->white_floor());
     return NoiseSpectrum::white(deviation);
 }
 
 void KernelErrorModel::restore() {
-    if (stored_is_reference_ || (blocks_ && grain_ == 0.0)) return;
-    const double rounding = root_mean_square_rounding(tiles_, coding_);
-    const double step = coding_.step();
+    if (map_.stored_is_reference || (map_.blocks && map_.grain == 0.0)) return;
+    const double rounding = root_mean_square_rounding(tiles_, map_.coding);
+    const double step = map_.coding.step();
     // Quantization steps of at most one texel width have as much power in the highest frequencies
     // as white noise. Wider steps have almost none.
-    const bool is_coarse_float = step == 0.0 && coding_.mantissa_bits < 20;
+    const bool is_coarse_float = step == 0.0 && map_.coding.mantissa_bits < 20;
     const double min_ratio = step > 0.0 ? 0.3 : is_coarse_float ? 0.0 : 1.25;
-    const bool steps_are_wide = step > 0.0 && high_pass_.deviation <= min_ratio * rounding;
-    const bool use_spectrum = colored_noise_ || (spectrum_ && high_pass_.is_white &&
-                                                 high_pass_.deviation > min_ratio * rounding);
+    const bool steps_are_wide = step > 0.0 && map_.high_pass.deviation <= min_ratio * rounding;
+    const bool use_spectrum =
+        map_.colored_noise || (map_.spectrum && map_.high_pass.is_white &&
+                               map_.high_pass.deviation > min_ratio * rounding);
     if (!use_spectrum && step == 0.0) return;
-    const NoiseSpectrum noise = colored_noise_ ? *colored_noise_ : white_noise(rounding);
+    const NoiseSpectrum noise = map_.colored_noise ? *map_.colored_noise : white_noise(rounding);
     if (use_spectrum) {
-        const std::vector<double> gains = spectrum_->gains(noise);
+        const std::vector<double> gains = map_.spectrum->gains(noise);
         const std::size_t pairs = (tiles_.size() + 1) / 2;
         parallel_for(pairs, 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const std::size_t count = std::min<std::size_t>(2, tiles_.size() - 2 * i);
-                remove_noise(std::span(tiles_).subspan(2 * i, count), *spectrum_, gains);
+                remove_noise(std::span(tiles_).subspan(2 * i, count), *map_.spectrum, gains);
             }
         });
         return;
@@ -432,67 +437,68 @@ void KernelErrorModel::add_line_noise(HeightTile& tile, Random& random) const {
                 tile.values[static_cast<std::size_t>(line * between + i * along)] += offset;
         }
     };
-    add(lines_.rows, tile.height, tile.width, tile.width, 1);
-    add(lines_.columns, tile.width, 1, tile.height, tile.width);
+    add(map_.lines.rows, tile.height, tile.width, tile.width, 1);
+    add(map_.lines.columns, tile.width, 1, tile.height, tile.width);
 }
 
 /// Returns a tile with new rounding, noise and outliers of the same distribution as in the map.
 Image KernelErrorModel::degraded(const HeightTile& tile, std::uint32_t seed) const {
     Random random(seed);
     HeightTile result = tile;
-    const double step = coding_.step();
+    const double step = map_.coding.step();
     // The shift of the codes separates the new steps from remainders of the stored ones.
     const double shift = 0.382 * step;
     std::vector<double> noise;
-    if (noise_ > 0.0 && colored_noise_) {
-        noise = noise_field(*colored_noise_, tile.width, seed);
-        const double share = noise_ / colored_noise_->deviation();
+    if (map_.noise > 0.0 && map_.colored_noise) {
+        noise = noise_field(*map_.colored_noise, tile.width, seed);
+        const double share = map_.noise / map_.colored_noise->deviation();
         for (double& value : noise)
             value *= share;
     }
-    if (!stored_is_reference_) add_line_noise(result, random);
+    if (!map_.stored_is_reference) add_line_noise(result, random);
     for (std::size_t i = 0; i < result.values.size(); ++i) {
         double& value = result.values[i];
         if (!noise.empty())
             value += noise[i];
-        else if (noise_ > 0.0 && noise_by_height_)
-            value += noise_by_height_->at(value) * random.normal();
-        else if (noise_ > 0.0)
-            value += noise_ * random.normal();
-        if (!outliers_.empty() && random.between(0.0, 1.0) < outlier_share_) {
-            const double which = random.between(0.0, static_cast<double>(outliers_.size()));
-            value += outliers_[std::min(outliers_.size() - 1, static_cast<std::size_t>(which))];
+        else if (map_.noise > 0.0 && map_.noise_by_height)
+            value += map_.noise_by_height->at(value) * random.normal();
+        else if (map_.noise > 0.0)
+            value += map_.noise * random.normal();
+        if (!map_.outliers.empty() && random.between(0.0, 1.0) < map_.outlier_share) {
+            const double which = random.between(0.0, static_cast<double>(map_.outliers.size()));
+            value +=
+                map_.outliers[std::min(map_.outliers.size() - 1, static_cast<std::size_t>(which))];
         }
     }
-    if (blocks_) quantize_blocks(result, *blocks_, step);
+    if (map_.blocks) quantize_blocks(result, *map_.blocks, step);
     for (double& value : result.values) {
         if (step > 0.0)
             value = step * std::floor((value + shift) / step + 0.5) - shift;
         else
-            value +=
-                std::numbers::sqrt3 * coding_.rounding_deviation(value) * random.between(-1.0, 1.0);
+            value += std::numbers::sqrt3 * map_.coding.rounding_deviation(value) *
+                     random.between(-1.0, 1.0);
     }
     return to_image(result);
 }
 
 void KernelErrorModel::degrade() {
-    const double step = coding_.step();
+    const double step = map_.coding.step();
     const double min_edge = std::max(3.0 * step, 6.0 * noise());
-    const glm::dvec2 scale = options_.strength / options_.texel;
-    edge_share_ = 0.0;
+    const glm::dvec2 scale = map_.options.strength / map_.options.texel;
+    map_.edge_share = 0.0;
     reference_normals_.assign(tiles_.size(), {});
     degraded_.resize(tiles_.size());
     std::vector<std::size_t> beside_edge(tiles_.size(), 0);
     parallel_for(tiles_.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const TileSlopes reference =
-                reference_slopes(tiles_[i], min_edge, coding_.has_exact_levels);
+                reference_slopes(tiles_[i], min_edge, map_.coding.has_exact_levels);
             Random random(static_cast<std::uint32_t>(i) ^ 0x6d697373U);
             for (std::size_t texel = 0; texel < reference.slopes.size(); ++texel) {
                 glm::dvec2 slope = reference.slopes[texel] * scale;
-                if (unresolved_slope_ > 0.0) {
+                if (map_.unresolved_slope > 0.0) {
                     const double along_x = random.normal();
-                    slope += scale * unresolved_slope_ * glm::dvec2(along_x, random.normal());
+                    slope += scale * map_.unresolved_slope * glm::dvec2(along_x, random.normal());
                 }
                 const bool is_beside_edge = reference.beside_edge[texel] != 0;
                 reference_normals_[i].push_back(
@@ -501,29 +507,29 @@ void KernelErrorModel::degrade() {
                 beside_edge[i] += is_beside_edge ? 1 : 0;
             }
             degraded_[i] = degraded(tiles_[i], static_cast<std::uint32_t>(i));
-            if (destaircased_ && step > 0.0) degraded_[i] = remove_steps(degraded_[i], step);
+            if (map_.destaircased && step > 0.0) degraded_[i] = remove_steps(degraded_[i], step);
         }
     });
     double texels = 0.0;
     for (std::size_t i = 0; i < tiles_.size(); ++i) {
-        edge_share_ += static_cast<double>(beside_edge[i]);
+        map_.edge_share += static_cast<double>(beside_edge[i]);
         texels += static_cast<double>(reference_normals_[i].size());
     }
-    edge_share_ /= texels;
+    map_.edge_share /= texels;
 }
 
 KernelErrorModel::KernelErrorModel(std::span<const Image> parts, const HeightCoding& coding,
                                    const BumpOptions& options, bool destaircased, Grain grain) {
-    options_ = options;
-    destaircased_ = destaircased;
-    coding_ = coding;
-    options_.wrap = Wrap::clamp;
-    options_.arithmetic = Arithmetic::float64;
+    map_.options = options;
+    map_.destaircased = destaircased;
+    map_.coding = coding;
+    map_.options.wrap = Wrap::clamp;
+    map_.options.arithmetic = Arithmetic::float64;
     tiles_.resize(parts.size());
     std::transform(parts.begin(), parts.end(), tiles_.begin(), to_tile);
     remove_blocks();
-    noise_by_height_ = detail::noise_by_height(tiles_);
-    if (!blocks_ && !noise_by_height_) remove_outliers();
+    map_.noise_by_height = detail::noise_by_height(tiles_);
+    if (!map_.blocks && !map_.noise_by_height) remove_outliers();
     detect_grain();
     interpret(grain);
     restore();
@@ -531,7 +537,7 @@ KernelErrorModel::KernelErrorModel(std::span<const Image> parts, const HeightCod
 }
 
 KernelErrorModel KernelErrorModel::interpreted(Grain grain) const {
-    KernelErrorModel other(static_cast<const KernelProperties&>(*this));
+    KernelErrorModel other(map_);
     other.tiles_ = every_fourth(noisy_tiles_);
     other.tiles_with_lines_ = every_fourth(tiles_with_lines_);
     other.interpret(grain);
@@ -541,29 +547,30 @@ KernelErrorModel KernelErrorModel::interpreted(Grain grain) const {
 }
 
 KernelPrediction KernelErrorModel::predict_upper(const KernelPrediction& prediction) const {
-    if (!spectrum_ || coding_.has_exact_levels) return prediction;
-    KernelErrorModel upper(static_cast<const KernelProperties&>(*this));
+    if (!map_.spectrum || map_.coding.has_exact_levels) return prediction;
+    KernelErrorModel upper(map_);
     upper.tiles_ = every_fourth(tiles_);
     upper.reference_normals_ = every_fourth(reference_normals_);
     upper.degraded_ = every_fourth(degraded_);
     const KernelPrediction sample = upper.predict(prediction.kernel, prediction.gaussian_radius);
-    const double rounding = root_mean_square_rounding(tiles_, coding_);
+    const double rounding = root_mean_square_rounding(tiles_, map_.coding);
     NoiseSpectrum noise = NoiseSpectrum::white(rounding);
-    if (noise_ > 0.0) noise = colored_noise_ ? *colored_noise_ : white_noise(rounding);
-    upper.unresolved_slope_ = spectrum_->unresolved_slope(noise);
-    if (!is_noisy() && !stored_is_reference_) {
+    if (map_.noise > 0.0) noise = map_.colored_noise ? *map_.colored_noise : white_noise(rounding);
+    upper.map_.unresolved_slope = map_.spectrum->unresolved_slope(noise);
+    if (!is_noisy() && !map_.stored_is_reference) {
         // Fine detail can be blurred noise.
         const NoiseSpectrum blurred =
-            spectrum_->max_blurred_noise(octave_deviations(every_fourth(tiles_)));
+            map_.spectrum->max_blurred_noise(octave_deviations(every_fourth(tiles_)));
         if (blurred.deviation() > 2.0 * rounding &&
-            (!max_noise_ || blurred.deviation() > max_noise_->deviation()))
-            upper.max_noise_ = blurred;
+            (!map_.max_noise || blurred.deviation() > map_.max_noise->deviation()))
+            upper.map_.max_noise = blurred;
     }
-    if (!stored_is_reference_ && upper.max_noise_ && upper.max_noise_->deviation() > 1.5 * noise_) {
-        upper.colored_noise_ = upper.max_noise_;
-        upper.noise_ = upper.max_noise_->deviation();
-    } else if (noise_ > 0.0 && !blocks_) {
-        const NoiseSpectrum hidden = spectrum_->hidden_detail(noise);
+    if (!map_.stored_is_reference && upper.map_.max_noise &&
+        upper.map_.max_noise->deviation() > 1.5 * map_.noise) {
+        upper.map_.colored_noise = upper.map_.max_noise;
+        upper.map_.noise = upper.map_.max_noise->deviation();
+    } else if (map_.noise > 0.0 && !map_.blocks) {
+        const NoiseSpectrum hidden = map_.spectrum->hidden_detail(noise);
         for (std::size_t i = 0; i < upper.tiles_.size(); ++i) {
             std::vector<double>& values = upper.tiles_[i].values;
             const std::vector<double> detail = noise_field(
@@ -588,7 +595,7 @@ KernelPrediction KernelErrorModel::predict_upper(const KernelPrediction& predict
 
 double KernelErrorModel::degrees_of_noise(Kernel kernel, int radius,
                                           const NoiseSpectrum& noise) const {
-    const glm::dvec2 scale = options_.strength / options_.texel;
+    const glm::dvec2 scale = map_.options.strength / map_.options.texel;
     const double variance =
         slope_variance(gradient_kernel(kernel, radius), noise) * 0.5 * glm::dot(scale, scale);
     double sum = 0.0;
@@ -606,7 +613,7 @@ double KernelErrorModel::degrees_of_noise(Kernel kernel, int radius,
 }
 
 KernelPrediction KernelErrorModel::predict(Kernel kernel, int radius, bool of_sample) const {
-    BumpOptions options = options_;
+    BumpOptions options = map_.options;
     options.kernel = kernel;
     options.gaussian_radius = radius;
     const int reach = gradient_kernel(kernel, radius).radius;

@@ -37,31 +37,31 @@ struct HeightCoding {
 
 /// The properties of a map, without its texels.
 struct KernelProperties {
-    BumpOptions options_;
-    bool destaircased_ = false;
-    HeightCoding coding_;
-    double rounding_ = 0.0;                    ///< RMS of the rounding_deviation() of the map.
-    std::optional<BlockQuantization> blocks_;  ///< Of maps that were stored as JPEG.
-    LineNoise lines_;
-    double grain_ = 0.0;  ///< Without offsets of lines.
-    double noise_ = 0.0;  ///< Like `grain_`; 0 if grain counts as detail.
-    std::optional<NoiseByHeight> noise_by_height_;
-    bool is_noise_blurred_ = false;
-    bool is_only_grain_ = false;
-    bool stored_is_reference_ = false;  ///< True if grain counts as detail.
-    std::optional<PowerSpectrum> spectrum_;
-    std::optional<NoiseSpectrum> colored_noise_;  ///< Noise and rounding, if they are not white.
-    std::optional<NoiseSpectrum> max_noise_;      ///< The strongest noise that the map allows.
-    double unresolved_slope_ = 0.0;               ///< RMS slope that texels do not resolve.
-    HighPassNoise high_pass_;
-    double white_deviation_ = 0.0;  ///< Standard deviation of white noise and rounding.
-    double outlier_share_ = 0.0;
-    std::vector<double> outliers_;  ///< The heights of the outliers.
-    double edge_share_ = 0.0;
+    BumpOptions options;
+    bool destaircased = false;
+    HeightCoding coding;
+    double rounding = 0.0;                    ///< RMS of the rounding_deviation() of the map.
+    std::optional<BlockQuantization> blocks;  ///< Of maps that were stored as JPEG.
+    LineNoise lines;
+    double grain = 0.0;  ///< Without offsets of lines.
+    double noise = 0.0;  ///< Like `grain`; 0 if grain counts as detail.
+    std::optional<NoiseByHeight> noise_by_height;
+    bool is_noise_blurred = false;
+    bool is_only_grain = false;
+    bool stored_is_reference = false;  ///< True if grain counts as detail.
+    std::optional<PowerSpectrum> spectrum;
+    std::optional<NoiseSpectrum> colored_noise;  ///< Noise and rounding, if they are not white.
+    std::optional<NoiseSpectrum> max_noise;      ///< The strongest noise that the map allows.
+    double unresolved_slope = 0.0;               ///< RMS slope that texels do not resolve.
+    HighPassNoise high_pass;
+    double white_deviation = 0.0;  ///< Standard deviation of white noise and rounding.
+    double outlier_share = 0.0;
+    std::vector<double> outliers;  ///< The heights of the outliers.
+    double edge_share = 0.0;
 };
 
 /// A reference surface and its degraded version, both from parts of a map.
-class KernelErrorModel : KernelProperties {
+class KernelErrorModel {
   public:
     /// \param parts  one channel each
     KernelErrorModel(std::span<const Image> parts, const HeightCoding& coding,
@@ -88,29 +88,29 @@ class KernelErrorModel : KernelProperties {
     [[nodiscard]] double degrees_of_noise(Kernel kernel, int radius,
                                           const NoiseSpectrum& noise) const;
 
-    [[nodiscard]] const HeightCoding& coding() const { return coding_; }
+    [[nodiscard]] const HeightCoding& coding() const { return map_.coding; }
     /// Returns true if there is more noise than rounding can cause.
-    [[nodiscard]] bool is_noisy() const { return grain() > 4.0 * rounding_; }
+    [[nodiscard]] bool is_noisy() const { return grain() > 4.0 * map_.rounding; }
     /// Returns true if the noise was blurred: detail can have the same spectrum.
-    [[nodiscard]] bool is_noise_blurred() const { return is_noise_blurred_; }
+    [[nodiscard]] bool is_noise_blurred() const { return map_.is_noise_blurred; }
     /// Returns true if the map was stored as JPEG.
-    [[nodiscard]] bool has_blocks() const { return blocks_.has_value(); }
+    [[nodiscard]] bool has_blocks() const { return map_.blocks.has_value(); }
     /// Returns the standard deviation of the noise without rounding.
-    [[nodiscard]] double noise() const { return stored_is_reference_ ? 0.0 : grain(); }
+    [[nodiscard]] double noise() const { return map_.stored_is_reference ? 0.0 : grain(); }
     /// Returns the standard deviation of the grain, whether it counts as noise or as detail.
     [[nodiscard]] double grain() const {
-        return std::sqrt(grain_ * grain_ + lines_.rows * lines_.rows +
-                         lines_.columns * lines_.columns);
+        return std::sqrt(map_.grain * map_.grain + map_.lines.rows * map_.lines.rows +
+                         map_.lines.columns * map_.lines.columns);
     }
     /// Returns true if the map contains almost nothing but grain.
-    [[nodiscard]] bool is_only_grain() const { return is_only_grain_; }
+    [[nodiscard]] bool is_only_grain() const { return map_.is_only_grain; }
     /// Returns the share of isolated outliers.
-    [[nodiscard]] double outlier_share() const { return outlier_share_; }
+    [[nodiscard]] double outlier_share() const { return map_.outlier_share; }
     /// Returns the share of texels beside a step edge. They have no reference normal.
-    [[nodiscard]] double edge_share() const { return edge_share_; }
+    [[nodiscard]] double edge_share() const { return map_.edge_share; }
 
   private:
-    explicit KernelErrorModel(const KernelProperties& properties) : KernelProperties(properties) {}
+    explicit KernelErrorModel(const KernelProperties& map) : map_(map) {}
     void remove_blocks();
     void remove_outliers();
     void detect_grain();
@@ -122,6 +122,7 @@ class KernelErrorModel : KernelProperties {
     [[nodiscard]] Image degraded(const HeightTile& tile, std::uint32_t seed) const;
     void degrade();
 
+    KernelProperties map_;
     std::vector<HeightTile> tiles_;        ///< The parts, which restore() turns into the reference.
     std::vector<HeightTile> noisy_tiles_;  ///< Before restore(), without offsets of lines.
     std::vector<HeightTile> tiles_with_lines_;  ///< With these offsets; empty if there are none.

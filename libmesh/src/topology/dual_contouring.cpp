@@ -260,7 +260,7 @@ class Contouring {
         at[axis] += static_cast<double>(hit.at);
         const GridTriangle& triangle = grid_.triangles()[hit.triangle];
         if (!shell_) return {at, triangle.normal};
-        return {at, direction_or_zero(at - nearest_point(at, triangle.corners))};
+        return {at, direction_or_zero(at - nearest_point(at, triangle.corners).point)};
     }
 
     const RemeshGrid& grid_;

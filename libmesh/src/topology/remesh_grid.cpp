@@ -260,27 +260,4 @@ void RemeshGrid::sort_bricks() {
         brick_index_[place_index(bricks[b].place)] = static_cast<std::int32_t>(b);
 }
 
-glm::dvec3 nearest_point(const glm::dvec3& p, const std::array<glm::dvec3, 3>& corners) {
-    const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-    const double squared = glm::dot(normal, normal);
-    bool is_above = squared > 0.0;
-    double best = std::numeric_limits<double>::infinity();
-    glm::dvec3 nearest = corners[0];
-    for (std::size_t i = 0; i < 3; ++i) {
-        const glm::dvec3 edge = corners[(i + 1) % 3] - corners[i];
-        const glm::dvec3 offset = p - corners[i];
-        if (glm::dot(glm::cross(normal, edge), offset) < 0.0) is_above = false;
-        const double length = glm::dot(edge, edge);
-        const double along =
-            length > 0.0 ? std::clamp(glm::dot(edge, offset) / length, 0.0, 1.0) : 0.0;
-        const glm::dvec3 away = offset - along * edge;
-        const double distance = glm::dot(away, away);
-        if (distance >= best) continue;
-        best = distance;
-        nearest = corners[i] + along * edge;
-    }
-    if (!is_above) return nearest;
-    return p - normal * (glm::dot(normal, p - corners[0]) / squared);
-}
-
 }  // namespace relief::detail

@@ -145,9 +145,6 @@ void find_outside_by_winding(RemeshGrid& grid, bool shell);
 /// The distance from triangles that is solid in a shell, in cells.
 constexpr double shell_distance = 0.75;
 
-/// Returns the point of a triangle that is nearest to p.
-glm::dvec3 nearest_point(const glm::dvec3& p, const std::array<glm::dvec3, 3>& corners);
-
 /// Triangles of the result with the triangles of the grid that they come from.
 struct ContouredSurface {
     std::vector<glm::vec3> positions;  ///< Object space.

@@ -14,6 +14,7 @@
 #include "progress_stage.h"
 #include "topology/column_hits.h"
 #include "topology/remesh_grid.h"
+#include "topology/triangle_distance.h"
 
 namespace relief::detail {
 namespace {
@@ -118,7 +119,7 @@ void visit_points(const GridTriangle& triangle, double distance, const Visit& vi
 }
 
 double distance_at(const glm::dvec3& p, const GridTriangle& triangle) {
-    return glm::length(p - nearest_point(p, triangle.corners));
+    return glm::length(p - nearest_point(p, triangle.corners).point);
 }
 
 void mark_near_points(RemeshGrid& grid) {

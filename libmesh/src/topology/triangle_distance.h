@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The distance of a point from a triangle.
+/// The point of a triangle that is nearest to another one, and its distance.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +13,18 @@ namespace relief::detail {
 /// The corners of a triangle.
 using Corners = std::array<glm::dvec3, 3>;
 
-/// Returns the squared distance from a point to a triangle, by the region of the triangle's plane
-/// in which the point lies. A triangle without area counts as its edges.
-inline double squared_distance(const glm::dvec3& p, const Corners& corners) {
+struct NearestPoint {
+    glm::dvec3 point;
+    double squared_distance;
+};
+
+/// Returns the point of a triangle that is nearest to p, by the region of the triangle's plane in
+/// which p lies. A triangle without area counts as its edges.
+inline NearestPoint nearest_point(const glm::dvec3& p, const Corners& corners) {
     const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
     const double squared_normal = glm::dot(normal, normal);
     bool is_above = squared_normal > 0.0;
-    double nearest = std::numeric_limits<double>::infinity();
+    NearestPoint nearest{corners[0], std::numeric_limits<double>::infinity()};
     for (std::size_t i = 0; i < 3; ++i) {
         const glm::dvec3 edge = corners[(i + 1) % 3] - corners[i];
         const glm::dvec3 offset = p - corners[i];
@@ -28,11 +33,18 @@ inline double squared_distance(const glm::dvec3& p, const Corners& corners) {
         const double along =
             length > 0.0 ? std::clamp(glm::dot(edge, offset) / length, 0.0, 1.0) : 0.0;
         const glm::dvec3 away = offset - along * edge;
-        nearest = std::min(nearest, glm::dot(away, away));
+        const double distance = glm::dot(away, away);
+        if (distance < nearest.squared_distance) nearest = {corners[i] + along * edge, distance};
     }
     if (!is_above) return nearest;
     const double height = glm::dot(normal, p - corners[0]);
-    return std::min(nearest, height * height / squared_normal);
+    return {p - normal * (height / squared_normal),
+            std::min(nearest.squared_distance, height * height / squared_normal)};
+}
+
+/// Returns the squared distance of a point from a triangle.
+inline double squared_distance(const glm::dvec3& p, const Corners& corners) {
+    return nearest_point(p, corners).squared_distance;
 }
 
 }  // namespace relief::detail

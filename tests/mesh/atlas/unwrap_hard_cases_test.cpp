@@ -11,6 +11,7 @@
 
 #include "hard_cases/mesh_changes.h"
 #include "hard_cases/random_meshes.h"
+#include "mesh/atlas/hard_unwrap_meshes.h"
 #include "mesh/atlas/unwrap_promises.h"
 #include "relief/mesh/unwrap.h"
 #include "support/hard_meshes.h"
@@ -23,7 +24,6 @@ namespace {
 
 using test::broken_promise;
 using test::Dice;
-using test::mesh_from;
 using test::MeshVariant;
 
 TEST(Unwrap, HasAResultForEveryMesh) {
@@ -58,82 +58,24 @@ TEST(Unwrap, HasAResultForEveryMesh) {
     }
 }
 
-/// A strip of `count` quadrilaterals that is joined to itself after half a twist.
-Mesh moebius(std::uint32_t count) {
-    Mesh mesh;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const double turn = 2.0 * std::numbers::pi * i / count;
-        for (const double side : {-0.3, 0.3}) {
-            const double radius = 1.0 + side * std::cos(0.5 * turn);
-            mesh.positions.emplace_back(radius * std::cos(turn), radius * std::sin(turn),
-                                        side * std::sin(0.5 * turn));
-        }
-    }
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const bool is_last = i + 1 == count;
-        const std::uint32_t a = 2 * i;
-        const std::uint32_t b = is_last ? 1 : a + 2;
-        const std::uint32_t c = is_last ? 0 : a + 3;
-        mesh.triangles.emplace_back(a, b, c);
-        mesh.triangles.emplace_back(a, c, a + 1);
-    }
-    return mesh;
-}
-
-/// Triangles that share one edge, around which they are evenly distributed.
-Mesh book(std::uint32_t pages) {
-    Mesh mesh = mesh_from({{0, 0, 0}, {0, 0, 1}}, {});
-    for (std::uint32_t i = 0; i < pages; ++i) {
-        const double turn = 2.0 * std::numbers::pi * i / pages;
-        mesh.positions.emplace_back(std::cos(turn), std::sin(turn), 0.5);
-        if (i % 2 == 0)
-            mesh.triangles.emplace_back(0, 1, i + 2);
-        else
-            mesh.triangles.emplace_back(1, 0, i + 2);
-    }
-    return mesh;
-}
-
-/// Separate triangles of 1 x `height`.
-Mesh slivers(std::uint32_t count, float height) {
-    Mesh mesh;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const auto y = static_cast<float>(i);
-        const std::uint32_t first = 3 * i;
-        mesh.positions.insert(mesh.positions.end(),
-                              {{0.0F, y, 0.0F}, {1.0F, y, 0.0F}, {0.5F, y + height, 0.0F}});
-        mesh.triangles.emplace_back(first, first + 1, first + 2);
-    }
-    return mesh;
-}
-
 TEST(Unwrap, HandlesHardTopology) {
     UnwrapOptions options;
     options.padding = 1;
-    const Unwrapped strip = unwrap(moebius(200), options);
+    const Unwrapped strip = unwrap(test::moebius_strip(200), options);
     EXPECT_EQ(broken_promise(strip), "");
     EXPECT_LE(strip.stats.charts, 8U);
     EXPECT_EQ(broken_promise(unwrap(test::fan(1000), options)), "");
     Report report;
-    EXPECT_EQ(broken_promise(unwrap(book(500), options, report)), "");
+    EXPECT_EQ(broken_promise(unwrap(test::book(500), options, report)), "");
     EXPECT_EQ(report.count("edge of more than two triangles, or of two in one direction"), 1U);
-    const Unwrapped thin = unwrap(slivers(1000, 1e-4F), options);
+    const Unwrapped thin = unwrap(test::separate_slivers(1000, 1e-4F), options);
     EXPECT_EQ(broken_promise(thin), "");
     EXPECT_EQ(thin.stats.charts, 1000U);
 }
 
 // A strip of 12,000 slivers, which are longer than wide by a factor of 10,000.
 TEST(Unwrap, JoinsSlivers) {
-    constexpr std::uint32_t count = 6000;
-    Mesh mesh;
-    for (std::uint32_t i = 0; i <= count; ++i)
-        for (const float y : {0.0F, 1.0F})
-            mesh.positions.emplace_back(1e-4F * static_cast<float>(i), y, 0.0F);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        mesh.triangles.emplace_back(2 * i, 2 * i + 2, 2 * i + 3);
-        mesh.triangles.emplace_back(2 * i, 2 * i + 3, 2 * i + 1);
-    }
-    const Unwrapped unwrapped = unwrap(mesh);
+    const Unwrapped unwrapped = unwrap(test::sliver_strip(6000, 1e-4, false));
     EXPECT_EQ(unwrapped.stats.charts, 1U);
     EXPECT_NEAR(unwrapped.stats.stretch, 1.0, 1e-3);
 }

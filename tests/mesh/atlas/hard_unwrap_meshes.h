@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Inputs of relief-unwrap-bench that programs for unwrapping find hard: many parts, slivers,
-/// edges of many triangles, and surfaces without an orientation.
+/// Inputs that programs for unwrapping find hard, for tests and for relief-unwrap-bench: many
+/// parts, slivers, edges of many triangles, and surfaces without an orientation.
 #pragma once
 
 #include <cmath>
@@ -14,10 +14,10 @@
 
 #include "relief/mesh/mesh.h"
 
-namespace relief::bench {
+namespace relief::test {
 
 /// Numbers within [0, 1), the same on every machine.
-class BenchDice {
+class InputDice {
   public:
     float operator()() { return static_cast<float>(random_()) / 4294967296.0F; }
     glm::vec3 point() {
@@ -43,7 +43,7 @@ inline void append_triangle(Mesh& mesh, const glm::vec3& a, const glm::vec3& b,
 /// Separate triangles in a box, of up to `size`.
 inline Mesh soup(int count, float size) {
     Mesh mesh;
-    BenchDice dice;
+    InputDice dice;
     for (int i = 0; i < count; ++i) {
         const glm::vec3 origin = dice.point();
         const glm::vec3 a = origin + size * dice.point();
@@ -56,7 +56,7 @@ inline Mesh soup(int count, float size) {
 /// Separate triangles as long as 1, and `width` wide.
 inline Mesh separate_slivers(int count, float width) {
     Mesh mesh;
-    BenchDice dice;
+    InputDice dice;
     for (int i = 0; i < count; ++i) {
         const glm::vec3 origin = 40.0F * dice.point();
         const glm::vec3 along = glm::normalize(dice.point() - 0.5F);
@@ -68,7 +68,7 @@ inline Mesh separate_slivers(int count, float width) {
 
 inline Mesh tetrahedra(int count) {
     Mesh mesh;
-    BenchDice dice;
+    InputDice dice;
     for (int i = 0; i < count; ++i) {
         const auto f = static_cast<std::uint32_t>(mesh.positions.size());
         const glm::vec3 origin(i % 24, i / 24 % 24, i / 576);
@@ -114,7 +114,7 @@ inline Mesh folded_fan(std::uint32_t count) {
     return mesh;
 }
 
-/// Triangles around one edge.
+/// Triangles that share one edge, around which they are evenly distributed.
 inline Mesh book(std::uint32_t pages) {
     Mesh mesh;
     mesh.positions = {{0, 0, 0}, {0, 0, 1}};
@@ -129,7 +129,7 @@ inline Mesh book(std::uint32_t pages) {
 /// Random triangles of a few vertices.
 inline Mesh tangle(std::size_t count, std::uint32_t vertices) {
     Mesh mesh;
-    BenchDice dice;
+    InputDice dice;
     for (std::uint32_t i = 0; i < vertices; ++i)
         mesh.positions.push_back(dice.point());
     while (mesh.triangles.size() < count) {
@@ -155,6 +155,7 @@ inline Mesh bow_ties(int count) {
     return mesh;
 }
 
+/// A strip of `count` quadrilaterals that is joined to itself after half a twist.
 inline Mesh moebius_strip(std::uint32_t count) {
     Mesh mesh;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -218,4 +219,4 @@ inline std::vector<std::pair<std::string, Mesh>> hard_unwrap_meshes() {
             {"Klein bottle", klein_bottle(100, 50)}};
 }
 
-}  // namespace relief::bench
+}  // namespace relief::test
