@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -38,29 +39,79 @@ bool has_less_error(const KernelPrediction& a, const KernelPrediction& b) {
     return a.rms_degrees < b.rms_degrees;
 }
 
+/// Measures Gaussians of increasing radii on a sample of the parts, until the error increases.
+std::vector<KernelPrediction> sampled_gaussians(const KernelErrorModel& model) {
+    constexpr std::size_t max_beyond = 3;  ///< Radii beyond that of the smallest error.
+    // High outliers spread over more texels before the error decreases again.
+    const int min_radius = model.outlier_share() > 0.0 ? 16 : 3;
+    std::vector<KernelPrediction> all;
+    std::size_t best = 0;
+    for (const int radius : radii) {
+        all.push_back(model.predict(Kernel::gaussian, radius, true));
+        if (has_less_error(all.back(), all[best])) best = all.size() - 1;
+        const double min_error = all[best].rms_degrees;
+        if (min_error == 0.0 && radius >= 3) break;
+        if (radius >= min_radius &&
+            (all.back().rms_degrees > 1.3 * min_error || all.size() > best + max_beyond))
+            break;
+    }
+    return all;
+}
+
+void scale(KernelPrediction& prediction, double factor) {
+    for (double KernelPrediction::*error :
+         {&KernelPrediction::mean_degrees, &KernelPrediction::rms_degrees,
+          &KernelPrediction::p99_degrees, &KernelPrediction::max_degrees})
+        prediction.*error = std::min(180.0, factor * prediction.*error);
+}
+
+/// Measures the best Gaussian on all parts, and its neighbors in both directions until the error is
+/// clearly larger. The errors of the others change by the factor of the nearest of these.
+void measure_best_on_all_parts(const KernelErrorModel& model,
+                               std::vector<KernelPrediction>& gaussians) {
+    // Parts of different detail can have two minima.
+    constexpr double clearly_larger = 1.1;
+    const auto measure = [&](KernelPrediction& one) {
+        const double of_sample = one.rms_degrees;
+        one = model.predict(Kernel::gaussian, one.gaussian_radius);
+        return of_sample > 0.0 ? one.rms_degrees / of_sample : 1.0;
+    };
+    const auto best = std::min_element(gaussians.begin(), gaussians.end(), has_less_error);
+    const double factor_of_best = measure(*best);
+    const auto measure_from = [&](auto one, auto end) {
+        double min_error = best->rms_degrees;
+        double factor = factor_of_best;
+        for (; one != end; ++one) {
+            factor = measure(*one);
+            min_error = std::min(min_error, one->rms_degrees);
+            if (one->rms_degrees > clearly_larger * min_error) break;
+        }
+        while (one != end && ++one != end)
+            scale(*one, factor);
+    };
+    measure_from(std::next(best), gaussians.end());
+    measure_from(std::make_reverse_iterator(best), gaussians.rend());
+}
+
 /// Measures all kernels on a sample of the parts, and those that may be the best on all parts.
 std::vector<KernelPrediction> all_predictions(const KernelErrorModel& model) {
-    constexpr bool of_sample = true;
     constexpr double max_factor = 1.25;
     std::vector<KernelPrediction> all;
     for (const Kernel kernel : fixed_kernels)
-        all.push_back(model.predict(kernel, 2, of_sample));
-    double min_error = std::numeric_limits<double>::infinity();
-    for (const int radius : radii) {
-        all.push_back(model.predict(Kernel::gaussian, radius, of_sample));
-        min_error = std::min(min_error, all.back().rms_degrees);
-        // Larger radii only increase the error, and none improves on 0. High outliers spread over
-        // more texels before the error decreases again.
-        const int min_radius = model.outlier_share() > 0.0 ? 16 : 3;
-        if (min_error == 0.0 && radius >= 3) break;
-        if (radius >= min_radius && all.back().rms_degrees > 1.3 * min_error) break;
+        all.push_back(model.predict(kernel, 2, true));
+    std::vector<KernelPrediction> gaussians = sampled_gaussians(model);
+    if (model.has_sample()) {
+        const auto min_error = [](const std::vector<KernelPrediction>& some) {
+            return std::min_element(some.begin(), some.end(), has_less_error)->rms_degrees;
+        };
+        const double of_gaussians = min_error(gaussians);
+        const double limit = max_factor * std::min(min_error(all), of_gaussians);
+        for (KernelPrediction& one : all) {
+            if (one.rms_degrees <= limit) one = model.predict(one.kernel, one.gaussian_radius);
+        }
+        if (of_gaussians <= limit) measure_best_on_all_parts(model, gaussians);
     }
-    const double limit =
-        max_factor * std::min_element(all.begin(), all.end(), has_less_error)->rms_degrees;
-    for (KernelPrediction& prediction : all) {
-        if (model.has_sample() && prediction.rms_degrees <= limit)
-            prediction = model.predict(prediction.kernel, prediction.gaussian_radius);
-    }
+    all.insert(all.end(), gaussians.begin(), gaussians.end());
     return all;
 }
 
