@@ -100,19 +100,31 @@ TEST(AccuracyRefusal, IsOneLine) {
          {"relief-accuracy run storage --output taken", 1, "taken: exists, but is not a folder"}});
 }
 
-const json& measurement(const json& experiment, const std::string& method) {
+/// Returns the error of a method in a report.
+const json& error_of(const json& experiment, const std::string& method) {
     for (const json& one : experiment["measurements"]) {
-        if (one["method"] == method) return one;
+        if (one["method"] == method) return one["error"];
     }
     throw std::runtime_error("no method " + method);
+}
+
+/// Runs `relief-accuracy own` quickly and without times.
+ProgramResult own(const Workplace& workplace, const std::string& arguments) {
+    return workplace.run("relief-accuracy own " + arguments + " --quick --no-times");
+}
+
+/// The same; returns the JSON of the report.
+json own_report(const Workplace& workplace, const std::string& arguments) {
+    const ProgramResult result = own(workplace, arguments + " --json");
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    return json::parse(result.out);
 }
 
 TEST_LABELS(not_sanitized);
 TEST(AccuracyOwn, MeasuresAMeshAndRecommends) {
     const Workplace workplace;
     workplace.write_square("square.obj");
-    const ProgramResult result =
-        workplace.run("relief-accuracy own square.obj --no-times --truth surface");
+    const ProgramResult result = own(workplace, "square.obj --truth surface");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("square.obj: a mesh"));
     EXPECT_THAT(result.out, HasSubstr("own/square.obj/normals"));
@@ -125,35 +137,31 @@ TEST_LABELS(not_sanitized);
 TEST(AccuracyOwn, JsonHoldsTheCommandThatRepeatsIt) {
     const Workplace workplace;
     workplace.write_square("a square.obj");
-    const ProgramResult result = workplace.run(
-        "relief-accuracy own 'a square.obj' --no-times --crease 30 --max-error 5 --json");
-    const json report = json::parse(result.out);
+    const json report = json::parse(
+        own(workplace, "'a square.obj' --crease 30 --max-error 5 --json --threads 2").out);
     EXPECT_EQ(report["command"],
-              "relief-accuracy own 'a square.obj' --crease 30 --max-error 5 --no-times");
+              "relief-accuracy own 'a square.obj' --crease 30 --max-error 5 --quick --no-times "
+              "--threads 2");
     EXPECT_EQ(report["experiments"][0]["command"], report["command"]);
     EXPECT_EQ(report["experiments"][1]["id"], "own/a square.obj/tangents");
-    EXPECT_NEAR(measurement(report["experiments"][1], "mikktspace")["error"]["max"].get<double>(),
-                0.0, 1e-4);
+    EXPECT_NEAR(error_of(report["experiments"][1], "mikktspace")["max"].get<double>(), 0.0, 1e-4);
 }
 
 TEST_LABELS(not_sanitized);
 TEST(AccuracyOwn, DistinguishesHeightsFromNormals) {
     const Workplace workplace;
     workplace.write_bricks("bricks.png");
-    const ProgramResult heights =
-        workplace.run("relief-accuracy own bricks.png --quick --no-times --strength 4");
+    const ProgramResult heights = own(workplace, "bricks.png --strength 4");
     ASSERT_EQ(heights.exit_code, 0) << heights.error;
     EXPECT_THAT(heights.out, HasSubstr("bricks.png: a height map of "));
     EXPECT_THAT(heights.out, HasSubstr("(if not: --image normals)"));
     EXPECT_THAT(heights.out, HasSubstr("To do it: relief-bake bump bricks.png OUT."));
     ASSERT_EQ(workplace.run("relief-bake bump bricks.png out/normals.png --strength 4").exit_code,
               0);
-    const ProgramResult normals =
-        workplace.run("relief-accuracy own out/normals.png --quick --no-times");
+    const ProgramResult normals = own(workplace, "out/normals.png");
     EXPECT_THAT(normals.out, HasSubstr("out/normals.png: a normal map of 16 bits"));
     EXPECT_THAT(normals.out, HasSubstr("(if not: --image heights)"));
-    const ProgramResult told =
-        workplace.run("relief-accuracy own out/normals.png --quick --no-times --image heights");
+    const ProgramResult told = own(workplace, "out/normals.png --image heights");
     EXPECT_THAT(told.out, HasSubstr("a height map of 16 bits"));
     EXPECT_THAT(told.out, Not(HasSubstr("if not:")));
 }
@@ -163,18 +171,11 @@ TEST(AccuracyOwn, NeedsHighAndLowForAPair) {
     const Workplace workplace;
     workplace.write_square("high.obj");
     workplace.write_square("low.obj");
-    const ProgramResult pair = workplace.run(
-        "relief-accuracy own --high high.obj --low low.obj --size 16 --no-times --json");
-    ASSERT_EQ(pair.exit_code, 0) << pair.error;
-    const json report = json::parse(pair.out);
+    const json report = own_report(workplace, "--high high.obj --low low.obj --size 16");
     EXPECT_EQ(report["experiments"].size(), 1U);
     EXPECT_EQ(report["experiments"][0]["subject"], "bake");
-    EXPECT_LE(
-        measurement(report["experiments"][0], "1 sample, 16 bit")["error"]["max"].get<double>(),
-        0.01);
-    const ProgramResult two =
-        workplace.run("relief-accuracy own high.obj low.obj --no-times --json");
-    EXPECT_EQ(json::parse(two.out)["experiments"].size(), 8U);
+    EXPECT_LE(error_of(report["experiments"][0], "1 sample, 16 bit")["max"].get<double>(), 0.01);
+    EXPECT_EQ(own_report(workplace, "high.obj low.obj")["experiments"].size(), 8U);
 }
 
 TEST_LABELS(not_sanitized);
@@ -187,12 +188,11 @@ TEST(AccuracyOwn, JpegFilesHaveAnUnknownError) {
         coarse.as<std::uint8_t>()[i] =
             static_cast<std::uint8_t>(heights.as<std::uint16_t>()[i] / 257U);
     write_image(workplace / "bricks.jpg", coarse);
-    const std::string line = "relief-accuracy own bricks.jpg --quick --no-times";
-    const ProgramResult result = workplace.run(line);
+    const ProgramResult result = own(workplace, "bricks.jpg");
     EXPECT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out, HasSubstr("and the unknown loss of the file's JPEG compression"));
     EXPECT_THAT(result.out, Not(HasSubstr("expected")));
-    const ProgramResult bounded = workplace.run(line + " --max-error 90");
+    const ProgramResult bounded = own(workplace, "bricks.jpg --max-error 90");
     EXPECT_EQ(bounded.exit_code, 1);
     EXPECT_THAT(bounded.out, HasSubstr("no method is known to be within 90 degrees (99 %)"));
 }
@@ -201,9 +201,8 @@ TEST_LABELS(not_sanitized);
 TEST(AccuracyOwn, UnreachableLimitExitsWith1) {
     const Workplace workplace;
     workplace.write_bricks("bricks.png");
-    const std::string line = "relief-accuracy own bricks.png --quick --no-times --max-error ";
-    EXPECT_EQ(workplace.run(line + "90").exit_code, 0);
-    const ProgramResult strict = workplace.run(line + "0");
+    EXPECT_EQ(own(workplace, "bricks.png --max-error 90").exit_code, 0);
+    const ProgramResult strict = own(workplace, "bricks.png --max-error 0");
     EXPECT_EQ(strict.exit_code, 1);
     EXPECT_THAT(strict.out,
                 HasSubstr("no method is within 0 degrees (99 %): the smallest error is "));
@@ -236,16 +235,14 @@ TEST(AccuracyOwn, WarnsAboutPhotographs) {
         return channel == 0 ? bump : channel == 1 ? bump * bump : 0.2;
     };
     write_image(workplace / "photo.png", image_of_bumps(3, in_color));
-    const ProgramResult photo = workplace.run("relief-accuracy own photo.png --quick --no-times");
+    const ProgramResult photo = own(workplace, "photo.png");
     ASSERT_EQ(photo.exit_code, 0) << photo.error;
     EXPECT_THAT(photo.out, HasSubstr("photo.png: a height map of 8 bits"));
     EXPECT_THAT(photo.out, HasSubstr("findings  4096 x texel whose red, green and blue differ"));
-    const json found =
-        json::parse(workplace.run("relief-accuracy own photo.png --quick --no-times --json").out);
+    const json found = own_report(workplace, "photo.png");
     EXPECT_EQ(found["experiments"][0]["input_findings"].size(), 1U);
     write_image(workplace / "gray.png", image_of_bumps(3, [](int, double bump) { return bump; }));
-    EXPECT_THAT(workplace.run("relief-accuracy own gray.png --quick --no-times").out,
-                HasSubstr("findings  none\n"));
+    EXPECT_THAT(own(workplace, "gray.png").out, HasSubstr("findings  none\n"));
 }
 
 TEST_LABELS(not_sanitized);
@@ -256,23 +253,20 @@ TEST(AccuracyOwn, MeasuresHeightsInAlpha) {
     };
     write_image(workplace / "packed.png", image_of_bumps(4, in_alpha));
     write_image(workplace / "alone.png", image_of_bumps(1, [](int, double bump) { return bump; }));
-    const std::string options = " --quick --no-times --json --image heights";
-    const json blind = json::parse(
-        workplace.run("relief-accuracy own packed.png" + options).out)["experiments"][0];
+    const json blind = own_report(workplace, "packed.png --image heights")["experiments"][0];
     EXPECT_THAT(blind["input_findings"].dump(),
                 HasSubstr("texel whose alpha differs from the first one's"));
-    const json packed =
-        json::parse(workplace.run("relief-accuracy own packed.png --channel alpha" + options).out);
+    const json packed = own_report(workplace, "packed.png --channel alpha --image heights");
     const json& in_packed = packed["experiments"][0];
-    const json alone =
-        json::parse(workplace.run("relief-accuracy own alone.png" + options).out)["experiments"][0];
+    const json alone = own_report(workplace, "alone.png --image heights")["experiments"][0];
     EXPECT_EQ(packed["command"],
               "relief-accuracy own packed.png --image heights --channel alpha --quick --no-times");
     EXPECT_TRUE(in_packed["input_findings"].empty());
     // The heights of a packed map are floats, so rounding differs.
-    EXPECT_NEAR(measurement(in_packed, "sobel3, float64, 16 bit")["error"]["rms"].get<double>(),
-                measurement(alone, "sobel3, float64, 16 bit")["error"]["rms"].get<double>(), 1e-4);
-    EXPECT_GT(measurement(alone, "sobel3, float64, 16 bit")["error"]["rms"].get<double>(), 1e-3);
+    const std::string method = "sobel3, float64, 16 bit";
+    EXPECT_NEAR(error_of(in_packed, method)["rms"].get<double>(),
+                error_of(alone, method)["rms"].get<double>(), 1e-4);
+    EXPECT_GT(error_of(alone, method)["rms"].get<double>(), 1e-3);
     const auto finding = in_packed["finding"].get<std::string>();
     EXPECT_THAT(finding, HasSubstr(" --channel alpha"));
     const std::string command = finding.substr(finding.find("relief-bake bump packed.png OUT."));
@@ -289,7 +283,7 @@ TEST(AccuracyOwn, ReportsNonFiniteHeights) {
     heights.as<float>()[70] = std::numeric_limits<float>::quiet_NaN();
     heights.as<float>()[900] = std::numeric_limits<float>::infinity();
     write_image(workplace / "nan.exr", heights);
-    const ProgramResult result = workplace.run("relief-accuracy own nan.exr --quick --no-times");
+    const ProgramResult result = own(workplace, "nan.exr");
     ASSERT_EQ(result.exit_code, 0) << result.error;
     EXPECT_THAT(result.out,
                 HasSubstr("findings  2 x non-finite height (column 6, row 1; column 4, row 14): "));
@@ -300,12 +294,9 @@ TEST(AccuracyOwn, CanKeepANormalMapUnchanged) {
     const Workplace workplace;
     workplace.write_bricks("bricks.png");
     ASSERT_EQ(workplace.run("relief-bake bump bricks.png map.png --bits 8").exit_code, 0);
-    const json experiment =
-        json::parse(workplace.run("relief-accuracy own map.png --quick --no-times --json")
-                        .out)["experiments"][0];
-    const json& kept = measurement(experiment, "as it is");
-    EXPECT_EQ(kept["error"]["max"], 0.0);
-    EXPECT_EQ(kept["cost"]["stored_bytes"], 3.0);
+    const json experiment = own_report(workplace, "map.png")["experiments"][0];
+    EXPECT_EQ(error_of(experiment, "as it is")["max"], 0.0);
+    EXPECT_EQ(experiment["measurements"][0]["cost"]["stored_bytes"], 3.0);
     const auto finding = experiment["finding"].get<std::string>();
     EXPECT_THAT(finding, testing::StartsWith("as it is: "));
     EXPECT_THAT(finding, testing::EndsWith("To do it: relief-bake convert map.png OUT.png"));

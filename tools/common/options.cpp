@@ -3,6 +3,7 @@
 #include "common/options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/given_options.h"
 #include "common/help.h"
 #include "files.h"
 #include "relief/mesh/image.h"
@@ -157,6 +159,20 @@ AddedOption add_switch(CLI::App& app, const std::string& name, const std::string
                        const std::function<void()>& take) {
     return {app, *app.add_flag(
                      name, [take](std::int64_t) { take(); }, description)};
+}
+
+std::vector<GivenOption> given_options(const CLI::App& app,
+                                       std::span<const std::string_view> left_out) {
+    std::vector<GivenOption> given;
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string name = option->get_name();
+        if (option->count() == 0 || !name.starts_with("--") ||
+            std::ranges::find(left_out, name) != left_out.end())
+            continue;
+        const bool is_flag = option->get_expected_max() == 0;
+        given.push_back({name, is_flag ? std::vector<std::string>() : option->results()});
+    }
+    return given;
 }
 
 AddedOption add_file(CLI::App& app, const std::string& name, std::filesystem::path& target,

@@ -48,8 +48,9 @@ void check(const ExperimentOptions& options);
 
 accuracy::RunOptions run_options(const ExperimentOptions& options);
 
-/// Returns the options that repeat the experiments: " --quick --repeats 3".
-std::string effort_options(const ExperimentOptions& options);
+/// Returns the options of a command line as typed, except for those of its output: " --quick
+/// --repeats 3".
+std::string repeated_options(const CLI::App& app);
 
 /// Returns whether tables are printed.
 bool prints_tables(const ExperimentOptions& options);

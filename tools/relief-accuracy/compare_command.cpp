@@ -334,40 +334,41 @@ ExitCode run(const CLI::App& app, const CompareOptions& options) {
     return judge(app, options, compared);
 }
 
-}  // namespace
-
-Command add_report_compare_command(CLI::App& tool) {
-    CLI::App& app =
-        add_subcommand(tool, "compare", "Compares the times, errors and memory of two reports.");
-    const auto options = std::make_shared<CompareOptions>();
-    add_file(app, "OLD", options->before, "The old report: accuracy.json of an earlier run.");
-    add_file(app, "NEW", options->after, "The new report: accuracy.json of a later run.");
+void add_options(CLI::App& app, CompareOptions& options) {
+    add_file(app, "OLD", options.before, "The old report: accuracy.json of an earlier run.");
+    add_file(app, "NEW", options.after, "The new report: accuracy.json of a later run.");
     const Range range{0.0, std::numeric_limits<double>::max(), "percent"};
     const char* group = "Verdict";
-    add_number(app, "--max-slower", "PERCENT", options->limits.max_slower, range,
+    add_number(app, "--max-slower", "PERCENT", options.limits.max_slower, range,
                "Exit with 1 if the methods of a subject, or all methods, take longer on one thread "
                "by more than this and by more than 15 %, up to which runs are tied: if the whole "
                "confidence "
                "interval of the median ratio is above it. With any limit, a missing method also "
                "counts.")
         .group(group);
-    add_number(app, "--max-error-growth", "PERCENT", options->limits.max_error_growth, range,
+    add_number(app, "--max-error-growth", "PERCENT", options.limits.max_error_growth, range,
                "Exit with 1 if an error figure of a method, or a point of a curve, increases by "
                "more than this, or no longer has a result.")
         .group(group);
-    add_number(app, "--max-memory-growth", "PERCENT", options->limits.max_memory_growth, range,
+    add_number(app, "--max-memory-growth", "PERCENT", options.limits.max_memory_growth, range,
                "Exit with 1 if the memory of a method increases by more than this, and by at least "
                "10 % and one megabyte.")
         .group(group);
-    add_switch(app, "--json", options->json,
+    add_switch(app, "--json", options.json,
                "Print one JSON object instead of text; docs/accuracy-schema.md describes it.");
-    add_switch(app, "--quiet", options->quiet, "Print only errors; the exit code is the result.");
+    add_switch(app, "--quiet", options.quiet, "Print only errors; the exit code is the result.");
     set_examples(app, {"relief-accuracy run storage --quick --output out/old",
                        "relief-accuracy run storage --quick --output out/new",
                        "relief-accuracy compare out/old/accuracy.json out/new/accuracy.json",
                        "relief-accuracy compare out/old/accuracy.json out/new/accuracy.json "
                        "--max-error-growth 1 --json"});
-    return {&app, [&app, options] { return run(app, *options); }};
+}
+
+}  // namespace
+
+Command add_report_compare_command(CLI::App& tool) {
+    return add_command<CompareOptions>(
+        tool, "compare", "Compares the times, errors and memory of two reports.", add_options, run);
 }
 
 }  // namespace relief::tools

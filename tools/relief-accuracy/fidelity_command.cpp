@@ -105,21 +105,20 @@ MeasuredChain measured_chain(const FidelityRequest& request, Stages& stages) {
 
 constexpr std::string_view row_format = "{:<24}{:>9}{:>9}{:>12}{:>10}{:>13}";
 
-std::string row(const std::string& name, const std::array<double, fidelity_light_count>& flip,
-                double degrees, double silhouette) {
-    return fmt::format(row_format, name, fmt::format("{:.4f}", flip[0]),
-                       fmt::format("{:.4f}", flip[1]), fmt::format("{:.4f}", flip[2]),
-                       fmt::format("{:.3f}", degrees), fmt::format("{:.3f}", silhouette));
+using FlipOfLights = std::array<double, fidelity_light_count>;
+
+/// A row of the table; figures that do not exist are empty.
+std::string row(const std::string& name, const std::optional<FlipOfLights>& flip, double degrees,
+                const std::optional<double>& silhouette) {
+    const auto cell = [&](std::size_t light) {
+        return flip ? fmt::format("{:.4f}", (*flip)[light]) : "";
+    };
+    return fmt::format(row_format, name, cell(0), cell(1), cell(2), fmt::format("{:.3f}", degrees),
+                       silhouette ? fmt::format("{:.3f}", *silhouette) : "");
 }
 
-std::string heading(const std::string& first) {
-    return fmt::format(row_format, first, "studio", "grazing", "base color", "degrees",
-                       "silhouette");
-}
-
-std::array<double, fidelity_light_count> flip_of(const Fidelity& loss,
-                                                 double PictureLoss::*figure) {
-    std::array<double, fidelity_light_count> values{};
+FlipOfLights flip_of(const Fidelity& loss, double PictureLoss::*figure) {
+    FlipOfLights values{};
     for (std::size_t i = 0; i < fidelity_light_count; ++i)
         values[i] = loss.pictures[i].*figure;
     return values;
@@ -138,17 +137,14 @@ std::string distance_text(const DistanceStats& stats, const MeasuredChain& chain
 
 std::vector<std::string> stage_lines(const MeasuredStage& stage, const MeasuredChain& chain) {
     const Fidelity& loss = stage.loss;
-    std::vector<std::string> lines = {heading("")};
-    lines.push_back(row("mean of all views", flip_of(loss, &PictureLoss::mean), loss.normals.mean,
-                        loss.silhouettes.width));
-    lines.push_back(fmt::format(
-        row_format, "95 % of the pixels", fmt::format("{:.4f}", loss.pictures[0].p95),
-        fmt::format("{:.4f}", loss.pictures[1].p95), fmt::format("{:.4f}", loss.pictures[2].p95),
-        fmt::format("{:.3f}", loss.normals.p95), ""));
-    lines.push_back(fmt::format(row_format, "99 % of the pixels", "", "", "",
-                                fmt::format("{:.3f}", loss.normals.p99), ""));
-    lines.push_back(row("noise floor (mean)", flip_of(loss, &PictureLoss::floor),
-                        loss.normals.floor, loss.silhouettes.floor));
+    std::vector<std::string> lines = {
+        fmt::format(row_format, "", "studio", "grazing", "base color", "degrees", "silhouette"),
+        row("mean of all views", flip_of(loss, &PictureLoss::mean), loss.normals.mean,
+            loss.silhouettes.width),
+        row("95 % of the pixels", flip_of(loss, &PictureLoss::p95), loss.normals.p95, {}),
+        row("99 % of the pixels", {}, loss.normals.p99, {}),
+        row("noise floor (mean)", flip_of(loss, &PictureLoss::floor), loss.normals.floor,
+            loss.silhouettes.floor)};
     for (const std::size_t view : worst_views_first(loss)) {
         const ViewLoss& one = loss.views[view];
         lines.push_back(row(

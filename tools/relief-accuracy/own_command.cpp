@@ -67,8 +67,7 @@ constexpr std::int64_t quick_texels = std::int64_t{1} << 18;
 
 bool is_model(const std::filesystem::path& file) {
     constexpr std::array extensions = {".gltf", ".glb", ".obj", ".ply", ".stl", ".off"};
-    const std::string own = extension_of(file);
-    return std::find(extensions.begin(), extensions.end(), own) != extensions.end();
+    return std::ranges::find(extensions, extension_of(file)) != extensions.end();
 }
 
 /// Returns the triangles of a model with the stored normals and tangents, once per primitive.
@@ -320,25 +319,6 @@ std::vector<AssetInput> inputs_of(const AssetRequest& request) {
     return inputs;
 }
 
-/// Returns the options as typed: " --strength 8".
-std::string options_text(const AssetRequest& request) {
-    std::string words;
-    if (request.high) words += " --high " + quoted(*request.high);
-    if (request.low) words += " --low " + quoted(*request.low);
-    if (request.image_kind)
-        words +=
-            *request.image_kind == ImageKind::heights ? " --image heights" : " --image normals";
-    if (request.reference)
-        words += *request.reference == NormalReference::file ? " --truth file" : " --truth surface";
-    if (request.crease_degrees) words += fmt::format(" --crease {:g}", *request.crease_degrees);
-    if (request.strength) words += fmt::format(" --strength {:g}", *request.strength);
-    if (request.channel) words += std::string(" --channel ") + enum_name(*request.channel);
-    if (request.wrap && request.wrap->is_settled())
-        words += " --wrap " + name_of(request.wrap->value_or({}));
-    if (request.size) words += fmt::format(" --size {}", *request.size);
-    return words;
-}
-
 /// Measures an input.
 /// \param options      all but `file` and `arguments`
 /// \param description  receives the type of the input and how it was read
@@ -374,17 +354,12 @@ void check(const AssetCommandOptions& options) {
         throw UsageError("--no-times and --max-time contradict each other");
 }
 
-std::string command_for(const AssetCommandOptions& options) {
+/// Returns the command that repeats the report.
+std::string command_for(const CLI::App& app, const AssetRequest& request) {
     std::string command = "relief-accuracy own";
-    for (const std::filesystem::path& file : options.request.files)
+    for (const std::filesystem::path& file : request.files)
         command += " " + quoted(file);
-    command += options_text(options.request);
-    if (options.bound.degrees) command += fmt::format(" --max-error {:g}", *options.bound.degrees);
-    if (options.bound.kind)
-        command += std::string(" --max-error-kind ") + enum_name(*options.bound.kind);
-    if (options.max_milliseconds)
-        command += fmt::format(" --max-time {:g}", *options.max_milliseconds);
-    return command + effort_options(options.how);
+    return command + repeated_options(app);
 }
 
 /// Returns the table of an experiment, shortened if it has many methods.
@@ -411,25 +386,26 @@ std::vector<std::string> findings_of(const std::vector<AssetExperiment>& experim
     return experiments.front().experiment.input_findings;
 }
 
-AssetOptions asset_options(const AssetCommandOptions& options, Stages& stages) {
+AssetOptions asset_options(const CLI::App& app, const AssetCommandOptions& options,
+                           Stages& stages) {
     AssetOptions own;
     own.run = run_options(options.how);
     own.run.tell = [&stages](const RunProgress& progress) {
         stages.show_progress(progress.title, 0.0);
     };
-    own.command = command_for(options);
+    own.command = command_for(app, options.request);
     own.request.max_error = options.bound.degrees;
     own.request.kind = options.bound.statistic();
     if (options.max_milliseconds) own.request.max_seconds = 1e-3 * *options.max_milliseconds;
     return own;
 }
 
-ExitCode run(const AssetCommandOptions& options) {
+ExitCode run(const CLI::App& app, const AssetCommandOptions& options) {
     check(options);
     const std::vector<AssetInput> inputs = inputs_of(options.request);
     prepare(options.how);
     Stages stages(options.how.general.quiet);
-    const AssetOptions own = asset_options(options, stages);
+    const AssetOptions own = asset_options(app, options, stages);
     AccuracyReport report;
     report.command = own.command;
     bool is_within_limits = true;
@@ -520,22 +496,24 @@ void add_limit_options(CLI::App& app, AssetCommandOptions& options) {
         .group(group);
 }
 
-}  // namespace
-
-Command add_own_command(CLI::App& tool) {
-    CLI::App& app = add_subcommand(tool, "own",
-                                   "Measures methods on your meshes and maps, and recommends one.");
-    const auto options = std::make_shared<AssetCommandOptions>();
-    add_input_options(app, options->request);
-    add_limit_options(app, *options);
-    add_experiment_options(app, options->how);
+void add_options(CLI::App& app, AssetCommandOptions& options) {
+    add_input_options(app, options.request);
+    add_limit_options(app, options);
+    add_experiment_options(app, options.how);
     set_examples(
         app, {"relief-accuracy own data/vase.obj --quick",
               "relief-accuracy own data/bricks-height.png --strength 12 --max-error 4 --quick",
               "relief-mesh subdivide data/vase.obj out/high.obj --levels 2",
               "relief-accuracy own --high out/high.obj --low data/vase.obj --size 64 --repeats 3",
               "relief-accuracy own data/vase.obj --crease 40 --no-times --output out/vase"});
-    return {&app, [options] { return run(*options); }};
+}
+
+}  // namespace
+
+Command add_own_command(CLI::App& tool) {
+    return add_command<AssetCommandOptions>(
+        tool, "own", "Measures methods on your meshes and maps, and recommends one.", add_options,
+        run);
 }
 
 }  // namespace relief::tools

@@ -10,17 +10,20 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 #include "accuracy_report.h"
 #include "commands.h"
 #include "common/command.h"
+#include "common/given_options.h"
 #include "common/text.h"
 #include "parallel.h"
 #include "relief/accuracy/experiment.h"
@@ -83,12 +86,15 @@ RunOptions run_options(const ExperimentOptions& options) {
     return run;
 }
 
-std::string effort_options(const ExperimentOptions& options) {
+std::string repeated_options(const CLI::App& app) {
+    constexpr std::array<std::string_view, 5> left_out = {"--output", "--json", "--quiet",
+                                                          "--max-memory", "--max-pixels"};
     std::string text;
-    if (options.quick) text += " --quick";
-    if (options.no_times) text += " --no-times";
-    if (options.repeats) text += fmt::format(" --repeats {}", *options.repeats);
-    if (options.general.threads > 0) text += fmt::format(" --threads {}", options.general.threads);
+    for (const GivenOption& option : given_options(app, left_out)) {
+        text += " " + option.name;
+        for (const std::string& value : option.values)
+            text += " " + quoted(std::filesystem::path(value));
+    }
     return text;
 }
 
@@ -333,13 +339,12 @@ std::vector<Subject> subjects_of(const std::vector<std::string>& words) {
 }
 
 /// Returns the command that repeats the run.
-std::string command_for(const std::string& subjects, const RunCommandOptions& options) {
-    const std::string passes = options.passes ? fmt::format(" --passes {}", *options.passes) : "";
-    return "relief-accuracy run " + subjects + effort_options(options.how) + passes;
+std::string command_for(const CLI::App& app, const std::string& subjects) {
+    return "relief-accuracy run " + subjects + repeated_options(app);
 }
 
 /// Runs all subjects. The last pass prints each table as soon as it is complete.
-std::vector<Experiment> run_subjects(const std::vector<Subject>& subjects,
+std::vector<Experiment> run_subjects(const CLI::App& app, const std::vector<Subject>& subjects,
                                      const RunCommandOptions& options, Stages& stages) {
     RunOptions run = run_options(options.how);
     run.passes = options.pass_count();
@@ -352,7 +357,7 @@ std::vector<Experiment> run_subjects(const std::vector<Subject>& subjects,
             static_cast<double>(done) / all);
     };
     run.finished = [&](Experiment& experiment) {
-        experiment.command = command_for(std::string(enum_name(experiment.subject)), options);
+        experiment.command = command_for(app, enum_name(experiment.subject));
         if (!prints_tables(options.how)) return;
         stages.clear_progress();
         print_text(fmt::format("{}\n", printable_lines(table_of(experiment))));
@@ -375,42 +380,44 @@ void check(const RunCommandOptions& options) {
     }
 }
 
-ExitCode run(const RunCommandOptions& options) {
+ExitCode run(const CLI::App& app, const RunCommandOptions& options) {
     check(options);
     const std::vector<Subject> subjects = subjects_of(options.words);
     prepare(options.how);
     Stages stages(options.how.general.quiet);
     AccuracyReport report;
     const ProcessorUse use;
-    report.experiments = run_subjects(subjects, options, stages);
+    report.experiments = run_subjects(app, subjects, options, stages);
     report.settings.passes = options.pass_count();
-    report.command = command_for(fmt::format("{}", fmt::join(options.words, " ")), options);
+    report.command = command_for(app, fmt::format("{}", fmt::join(options.words, " ")));
     const bool draws = std::any_of(subjects.begin(), subjects.end(), uses_opengl);
     finish_report(options.how, std::move(report), draws, use);
     return ExitCode::done;
 }
 
-}  // namespace
-
-Command add_run_command(CLI::App& tool) {
-    CLI::App& app = add_subcommand(
-        tool, "run", "Measures the error and time of methods on inputs with a known ground truth.");
-    const auto options = std::make_shared<RunCommandOptions>();
-    app.add_option("SUBJECT", options->words,
+void add_options(CLI::App& app, RunCommandOptions& options) {
+    app.add_option("SUBJECT", options.words,
                    fmt::format("The subjects to measure, one or more of {}.", subject_choices()))
         ->required();
-    add_experiment_options(app, options->how);
+    add_experiment_options(app, options.how);
     add_value(
         app, "--passes", "N",
         "The number of passes over all experiments, 1 to 100. The repeats are distributed over the "
         "passes, so that a disturbance of the machine affects only one pass. Default: 3.",
-        [options](const std::string& subject, const std::string& text) {
-            options->passes = parse_integer(subject, text, 1, max_passes);
+        [&options](const std::string& subject, const std::string& text) {
+            options.passes = parse_integer(subject, text, 1, max_passes);
         })
         .group("Effort");
     set_examples(app, {"relief-accuracy run storage --quick --output out/accuracy",
                        "relief-accuracy run storage --quick --no-times --json"});
-    return {&app, [options] { return run(*options); }};
+}
+
+}  // namespace
+
+Command add_run_command(CLI::App& tool) {
+    return add_command<RunCommandOptions>(
+        tool, "run", "Measures the error and time of methods on inputs with a known ground truth.",
+        add_options, run);
 }
 
 }  // namespace relief::tools

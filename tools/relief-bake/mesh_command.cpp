@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "common/file_jobs.h"
+#include "common/given_options.h"
 #include "common/model_file.h"
 #include "common/summary.h"
 #include "mesh_bake.h"
@@ -465,21 +466,14 @@ void check_single(const CLI::App& app, MeshOptions& options) {
 }
 
 /// The options of a command line, but for those of the process and of shards.
-std::vector<std::string> given_options(const CLI::App& app) {
+std::vector<std::string> options_of_shards(const CLI::App& app) {
     constexpr std::array<std::string_view, 7> left_out = {
         "--shard", "--part", "--threads", "--quiet", "--max-memory", "--max-pixels", "--output"};
     std::vector<std::string> words;
-    for (const CLI::Option* option : app.get_options()) {
-        const std::string name = option->get_name();
-        if (option->count() == 0 || !name.starts_with("--") ||
-            std::ranges::find(left_out, name) != left_out.end())
-            continue;
-        if (option->get_expected_max() == 0) {
-            words.push_back(name);
-            continue;
-        }
-        for (const std::string& value : option->results())
-            words.push_back(name + "=" + value);
+    for (const GivenOption& option : given_options(app, left_out)) {
+        if (option.values.empty()) words.push_back(option.name);
+        for (const std::string& value : option.values)
+            words.push_back(option.name + "=" + value);
     }
     return words;
 }
@@ -497,7 +491,7 @@ ExitCode run_shard(const CLI::App& app, MeshOptions& options) {
     }
     set_thread_limit(options.general.threads);
     Stages stages(options.general.quiet);
-    const BakedShard shard = bake_shard(options.request, {given_options(app), options.files},
+    const BakedShard shard = bake_shard(options.request, {options_of_shards(app), options.files},
                                         *options.shard, options.part, stages);
     if (options.general.quiet) return ExitCode::done;
     Summary summary;
