@@ -11,7 +11,6 @@
 #include <memory>
 
 #include "common/file_jobs.h"
-#include "common/given_options.h"
 #include "common/model_file.h"
 #include "common/summary.h"
 #include "mesh_bake.h"
@@ -465,19 +464,6 @@ void check_single(const CLI::App& app, MeshOptions& options) {
     check_files(request, options.files);
 }
 
-/// The options of a command line, but for those of the process and of shards.
-std::vector<std::string> options_of_shards(const CLI::App& app) {
-    constexpr std::array<std::string_view, 7> left_out = {
-        "--shard", "--part", "--threads", "--quiet", "--max-memory", "--max-pixels", "--output"};
-    std::vector<std::string> words;
-    for (const GivenOption& option : given_options(app, left_out)) {
-        if (option.values.empty()) words.push_back(option.name);
-        for (const std::string& value : option.values)
-            words.push_back(option.name + "=" + value);
-    }
-    return words;
-}
-
 ExitCode run_shard(const CLI::App& app, MeshOptions& options) {
     if (options.output) {
         throw UsageError("-o, --shard: contradict each other", "bake the pairs one after another");
@@ -491,7 +477,7 @@ ExitCode run_shard(const CLI::App& app, MeshOptions& options) {
     }
     set_thread_limit(options.general.threads);
     Stages stages(options.general.quiet);
-    const BakedShard shard = bake_shard(options.request, {options_of_shards(app), options.files},
+    const BakedShard shard = bake_shard(options.request, {shared_options(app), options.files},
                                         *options.shard, options.part, stages);
     if (options.general.quiet) return ExitCode::done;
     Summary summary;

@@ -38,18 +38,6 @@ std::filesystem::path part_name(const std::filesystem::path& output, const Part&
            fmt::format("{}.{}-{}-of-{}.part", name, part.job.hash(), part.shard, part.job.count);
 }
 
-/// States why two parts belong to different bakes.
-std::string difference(const PartJob& a, const PartJob& b) {
-    if (a.version != b.version) return "the versions of relief differ";
-    if (a.count != b.count) return fmt::format("one is of {} parts, one of {}", a.count, b.count);
-    if (a.files != b.files || a.arguments != b.arguments) return "the options or files differ";
-    for (const auto& input : a.inputs) {
-        if (std::ranges::find(b.inputs, input) == b.inputs.end())
-            return fmt::format("the contents of {} differ", input.first);
-    }
-    return "the files that they read differ";
-}
-
 /// The rows of one map, from all parts.
 class MapReader {
   public:
@@ -209,48 +197,13 @@ BakedShard bake_shard(const MeshBakeRequest& request, const MeshArguments& argum
 }
 
 void sort_parts(std::vector<std::unique_ptr<PartFile>>& parts) {
-    const PartFile& first = *parts.front();
-    if (first.part().job.version != version_and_commit()) {
-        throw failure(first.path(),
-                      fmt::format("was written by relief {}, and this is {}",
-                                  first.part().job.version, version_and_commit()),
-                      "merge with the version that baked it");
-    }
-    for (const auto& part : parts) {
-        if (part->part().job == first.part().job) continue;
-        throw failure(part->path(),
-                      fmt::format("belongs to another bake than {}: {}", first.path().string(),
-                                  difference(first.part().job, part->part().job)),
-                      "give the parts of one bake");
-    }
-    std::ranges::stable_sort(parts, {}, [](const auto& part) { return part->part().shard; });
-    for (std::size_t i = 1; i < parts.size(); ++i) {
-        if (parts[i]->part().shard != parts[i - 1]->part().shard) continue;
-        throw failure(parts[i]->path(),
-                      fmt::format("is part {} of {}, as {} is", parts[i]->part().shard,
-                                  first.part().job.count, parts[i - 1]->path().string()),
-                      "give each part once");
-    }
-    std::vector<std::string> missing;
-    std::size_t next = 0;
-    const std::size_t count = parts.front()->part().job.count;
-    for (std::size_t shard = 1; shard <= count; ++shard) {
-        if (next < parts.size() && parts[next]->part().shard == shard)
-            ++next;
-        else
-            missing.push_back(std::to_string(shard));
-    }
-    if (missing.empty()) return;
-    constexpr std::size_t max_named = 20;
-    const std::size_t all = missing.size();
-    if (all > max_named) {
-        missing.resize(max_named);
-        missing.push_back(fmt::format("and {} more", all - max_named));
-    }
-    throw failure(parts.front()->path(),
-                  fmt::format("{} of {} parts {} missing: {}", all, count, all == 1 ? "is" : "are",
-                              fmt::join(missing, ", ")),
-                  "bake them with --shard");
+    std::vector<PartName> names;
+    for (const auto& part : parts)
+        names.push_back({part->path(), &part->part().job, part->part().shard});
+    std::vector<std::unique_ptr<PartFile>> sorted;
+    for (const std::size_t index : sorted_parts(names, "bake"))
+        sorted.push_back(std::move(parts[index]));
+    parts = std::move(sorted);
 }
 
 MeshBake merge_parts(const MeshBakeRequest& request,

@@ -22,26 +22,13 @@
 #include <vector>
 
 #include "common/material_maps.h"
+#include "common/part_job.h"
 #include "file_replacement.h"
 #include "files.h"
 #include "mesh_bake.h"
 #include "relief/mesh/bake_shards.h"
 
 namespace relief::tools {
-
-/// The facts that all parts of a bake share, and parts of other bakes do not.
-struct PartJob {
-    std::string version;                 ///< Of the program.
-    std::size_t count = 0;               ///< Of shards.
-    std::vector<std::string> arguments;  ///< "--size=512", without those of the process.
-    std::vector<std::string> files;      ///< HIGH... LOW OUT, as given.
-    std::vector<std::pair<std::string, std::string>> inputs;  ///< Names and hashes.
-
-    friend bool operator==(const PartJob&, const PartJob&) = default;
-
-    /// The hash of all of it.
-    [[nodiscard]] std::string hash() const;
-};
 
 /// The rows of a part.
 struct PartRows {
@@ -60,6 +47,11 @@ struct Part {
     std::vector<PartRows> rows;
     double milliseconds = 0.0;  ///< Of the bake.
 };
+
+/// Returns the description of a part.
+Json part_json(const Part& part);
+/// Reads a description. \throws InvalidInput if it is damaged or inconsistent
+Part parse_part(const std::string& json);
 
 /// Writes a part. Without finish(), no file is left.
 class PartWriter {
