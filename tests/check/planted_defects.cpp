@@ -456,6 +456,11 @@ void write_planted_defects(const fs::path& folder) {
         for (int variant = 0; variant < planted_variants; ++variant)
             write_planted_model(folder, planted_name(kind, variant), kind, variant);
     }
+    // For bench/checkers.
+    json kinds = json::array();
+    for (const KindRow& row : rows())
+        kinds.push_back({{"rule", row.kind.rule}, {"also", row.kind.also}});
+    std::ofstream(folder / "kinds.json") << kinds.dump(1);
 }
 
 }  // namespace relief::test

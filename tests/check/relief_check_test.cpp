@@ -232,6 +232,8 @@ TEST_F(CheckCommand, RefusesContradictions) {
          {"check in -o out", 2, "--output"},
          {"check in --fix", 2, "--fix: needs either a folder for copies or --in-place"},
          {"check in --fix --in-place -o out", 2, "--fix: needs either"},
+         {"check in --fix --in-place --write-baseline", 2, "--fix, --write-baseline: contradict"},
+         {"check in --cache in/a.png", 2, "--cache in/a.png: is the name of a model or an image"},
          {"check in --report out/x.pdf", 2,
           "--report out/x.pdf: .pdf is not the extension of a report"},
          {"check in --report in/relief.json", 2, "--report in/relief.json: "},

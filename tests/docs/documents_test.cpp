@@ -413,7 +413,7 @@ TEST_P(HelpExamples, RunWithoutAMessage) {
 INSTANTIATE_TEST_SUITE_P(Of, HelpExamples,
                          testing::Values("relief-accuracy", "relief-bake", "relief-mesh",
                                          "relief-view", "relief make", "relief check",
-                                         "relief farm"),
+                                         "relief merge", "relief farm"),
                          test_name);
 
 TEST_LABELS(slow);

@@ -23,7 +23,8 @@ std::vector<std::string> section_of(const std::string& page, const std::string& 
 
 std::vector<std::string> commands_with_help(const Workplace& workplace) {
     // The other commands of relief are these tools.
-    std::vector<std::string> commands = {"relief", "relief make", "relief check", "relief farm"};
+    std::vector<std::string> commands = {"relief", "relief make", "relief check", "relief merge",
+                                         "relief farm"};
     for (const std::string tool :
          {"relief-accuracy", "relief-bake", "relief-mesh", "relief-view"}) {
         commands.push_back(tool);

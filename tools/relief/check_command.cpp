@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command `relief check`: models first, in parallel, then the images that they name or that lie
-// in the folders, each once. Tests: tests/check/relief_check_test.cpp.
+// The commands `relief check` and `relief merge`, which finishes a check of several shards.
+// Tests: tests/check/relief_check_test.cpp, check_shards_test.cpp.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -11,20 +12,21 @@
 #include <vector>
 
 #include "check_cache.h"
-#include "check_files.h"
 #include "check_fix.h"
+#include "check_part.h"
 #include "check_project.h"
 #include "check_report.h"
 #include "check_rules.h"
+#include "check_run.h"
 #include "check_walk.h"
+#include "common/content_hash.h"
 #include "common/file_jobs.h"
 #include "common/options.h"
+#include "common/shard_choice.h"
 #include "common/summary.h"
 #include "driver.h"
 #include "file_replacement.h"
-#include "parallel.h"
 #include "relief/mesh/execution.h"
-#include "relief/mesh/limits.h"
 
 namespace relief::tools {
 namespace {
@@ -44,6 +46,14 @@ struct CheckCommand {
     bool fixes = false;
     bool in_place = false;
     bool writes_baseline = false;
+    std::optional<ShardChoice> shard;
+    std::optional<fs::path> part;
+    GeneralOptions general;
+};
+
+struct MergeCommand {
+    std::vector<fs::path> parts;
+    bool keeps_parts = false;
     GeneralOptions general;
 };
 
@@ -84,6 +94,16 @@ CheckProject project_of(const CheckCommand& command) {
     return project;
 }
 
+/// A file of the tool must not replace a checked one. \throws UsageError
+void check_private_file(const std::string& option, const fs::path& file) {
+    if (kind_by_name(file)) {
+        throw UsageError(
+            fmt::format("{} {}: is the name of a model or an image", option, file.string()),
+            "give a name with another extension");
+    }
+    require_folder_of(file);
+}
+
 void check_options(const CLI::App& app, const CheckCommand& command) {
     if (command.lists_rules) {
         if (!command.paths.empty())
@@ -93,6 +113,10 @@ void check_options(const CLI::App& app, const CheckCommand& command) {
     if (command.paths.empty()) throw UsageError("PATH: is missing", "give a folder or files");
     if (command.general.quiet && command.format != CheckFormat::text)
         throw UsageError("--format and --quiet contradict each other", "give one of them");
+    if (command.fixes && command.writes_baseline) {
+        throw UsageError("--fix, --write-baseline: contradict each other",
+                         "store what is left after --fix");
+    }
     if (!command.fixes) refuse_given(app, {"--output", "--in-place"}, "--fix");
     if (command.fixes && command.folder.has_value() == command.in_place) {
         throw UsageError("--fix: needs either a folder for copies or --in-place",
@@ -102,7 +126,13 @@ void check_options(const CLI::App& app, const CheckCommand& command) {
         format_of_report(file);
         require_folder_of(file);
     }
-    if (command.cache) require_folder_of(*command.cache);
+    if (command.cache) check_private_file("--cache", *command.cache);
+    if (!command.shard) {
+        if (command.part) throw UsageError("--part: has no effect without --shard");
+    } else if (command.cache) {
+        throw UsageError("--cache, --shard: contradict each other", "leave out --cache");
+    }
+    if (command.part) check_private_file("--part", *command.part);
 }
 
 /// No output may replace relief.json, or another output. \throws UsageError
@@ -111,6 +141,10 @@ void check_outputs(const CheckCommand& command, const CheckProject& project) {
     if (command.cache) {
         check_distinct("--cache", *command.cache, others);
         others.push_back(*command.cache);
+    }
+    if (command.part) {
+        check_distinct("--part", *command.part, others);
+        others.push_back(*command.part);
     }
     for (const fs::path& file : command.reports) {
         check_distinct("--report", file, others);
@@ -138,123 +172,6 @@ ExitCode print_rules(const CheckCommand& command) {
     return ExitCode::done;
 }
 
-/// Returns a text of the limits that change the findings of a file.
-std::string limits_key() {
-    const InputLimits limits = input_limits();
-    return fmt::format("{} {} {}", limits.outside_files, limits.memory, limits.pixels);
-}
-
-/// Checks files in parallel, with the cache.
-class Checker {
-  public:
-    explicit Checker(const CheckCommand& command) : stages_(command.general.quiet) {
-        if (command.cache) cache_.emplace(*command.cache);
-    }
-
-    /// Checks models and images. \return in the order of the walk, then images of other folders
-    std::vector<CheckedItem> check(const std::vector<CheckInput>& inputs) {
-        std::vector<CheckedItem> items(inputs.size());
-        std::vector<std::size_t> models;
-        for (std::size_t i = 0; i < inputs.size(); ++i) {
-            if (inputs[i].kind == CheckedKind::model) models.push_back(i);
-        }
-        run("models", models.size(), [&](std::size_t i) {
-            const CheckInput& input = inputs[models[i]];
-            Json paired = Json::array();
-            for (const UsedImage& image : input.paired)
-                paired.push_back(image.file.string());
-            items[models[i]] =
-                cached(input.file, paired.dump(-1, ' ', false, Json::error_handler_t::replace),
-                       [&] { return check_model_file(input); });
-        });
-        check_images(inputs, items);
-        return items;
-    }
-
-    /// \throws FileError
-    void write_cache() const {
-        if (cache_) cache_->write();
-    }
-
-  private:
-    struct ImageTask {
-        fs::path file;
-        std::vector<ImageRole> roles;
-        std::vector<std::size_t> items;  ///< Several for links to one file.
-    };
-
-    void check_images(const std::vector<CheckInput>& inputs, std::vector<CheckedItem>& items) {
-        std::map<fs::path, ImageTask> tasks;
-        for (std::size_t i = 0; i < inputs.size(); ++i) {
-            if (inputs[i].kind != CheckedKind::image) continue;
-            ImageTask& task = tasks[identity_of(inputs[i].file)];
-            if (task.file.empty()) task.file = inputs[i].file;
-            task.items.push_back(i);
-        }
-        for (const CheckedItem& item : items) {
-            for (const UsedImage& image : item.images) {
-                ImageTask& task = tasks[identity_of(image.file)];
-                if (task.file.empty()) task.file = image.file;
-                task.roles.push_back(image.role);
-            }
-        }
-        std::vector<ImageTask> list;
-        for (auto& [identity, task] : tasks) {
-            std::ranges::sort(task.roles);
-            task.roles.erase(std::unique(task.roles.begin(), task.roles.end()), task.roles.end());
-            if (task.items.empty()) {
-                task.items.push_back(items.size());
-                items.emplace_back().file = task.file;
-            }
-            list.push_back(std::move(task));
-        }
-        run("images", list.size(), [&](std::size_t i) {
-            const ImageTask& task = list[i];
-            const CheckedItem item = cached(task.file, roles_key(task.roles), [&] {
-                return check_image_file(task.file, task.roles);
-            });
-            for (const std::size_t each : task.items) {
-                items[each] = item;
-                if (each < inputs.size()) items[each].file = inputs[each].file;
-            }
-        });
-    }
-
-    static std::string roles_key(const std::vector<ImageRole>& roles) {
-        const Json json = json_list(roles, [](const ImageRole& role) -> Json {
-            return {static_cast<int>(role.slot), role.is_gltf, role.material, role.materials};
-        });
-        return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-    }
-
-    template <typename Work>
-    void run(const std::string& name, std::size_t count, const Work& work) {
-        stages_.run(name, [&] {
-            relief::detail::parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end; ++i)
-                    work(i);
-            });
-        });
-    }
-
-    template <typename Work>
-    CheckedItem cached(const fs::path& file, const std::string& key, const Work& work) {
-        const std::string whole = limits_key() + " " + key;
-        if (cache_) {
-            if (auto found = cache_->find(file, whole)) {
-                cache_->add(*found, whole);
-                return *std::move(found);
-            }
-        }
-        CheckedItem item = work();
-        if (cache_) cache_->add(item, whole);
-        return item;
-    }
-
-    Stages stages_;
-    std::optional<CheckCache> cache_;
-};
-
 std::map<fs::path, ImageFigures> figures_of(const std::vector<CheckedItem>& items) {
     std::map<fs::path, ImageFigures> images;
     for (const CheckedItem& item : items) {
@@ -264,15 +181,21 @@ std::map<fs::path, ImageFigures> figures_of(const std::vector<CheckedItem>& item
     return images;
 }
 
+WalkedFiles walk(const CheckCommand& command, const CheckProject& project) {
+    // Fixed copies of an earlier run.
+    const fs::path copies = command.folder ? identity_of(*command.folder) : fs::path();
+    return walk_files(command.paths, [&](const fs::path& path) {
+        return project.excludes(path) || (command.folder && identity_of(path) == copies);
+    });
+}
+
 /// Checks all files and applies the project.
 CheckResults results_of(const CheckCommand& command, const CheckProject& project,
-                        Checker& checker) {
-    WalkedFiles walked =
-        walk_files(command.paths, [&](const fs::path& path) { return project.excludes(path); });
+                        const WalkedFiles& walked, const CheckSource& source, Stages& stages) {
     CheckResults results;
     results.shows_notes = command.notes;
-    results.items = checker.check(walked.files);
-    std::ranges::move(walked.findings, std::back_inserter(results.items));
+    results.items = check_all(walked.files, source, stages);
+    std::ranges::copy(walked.findings, std::back_inserter(results.items));
     const auto images = figures_of(results.items);
     for (CheckedItem& item : results.items) {
         const RemovedFindings removed = apply(project, images, item);
@@ -299,19 +222,13 @@ ExitCode exit_code_of(const CLI::App& app, const CheckCommand& command,
     return is_fault ? ExitCode::fell_back : ExitCode::done;
 }
 
-ExitCode run(const CLI::App& app, const CheckCommand& command) {
-    check_options(app, command);
-    if (command.lists_rules) return print_rules(command);
-    set_thread_limit(command.general.threads);
-    CheckProject project = project_of(command);
-    check_outputs(command, project);
-    if (command.writes_baseline) project.baseline.clear();
-    Checker checker(command);
-    CheckResults results = results_of(command, project, checker);
+/// Runs fixes and writes the reports.
+ExitCode finish(const CLI::App& app, const CheckCommand& command, const CheckProject& project,
+                CheckResults& results) {
     if (command.writes_baseline) write_baseline(project, results.items);
     if (command.fixes) {
-        results.fixes =
-            fix_files(results.items, command.in_place ? std::optional<fs::path>() : command.folder);
+        results.fixes = fix_files(
+            results.items, command.in_place ? std::optional<fs::path>() : command.folder, project);
     }
     for (const fs::path& file : command.reports) {
         const CheckFormat format = format_of_report(file);
@@ -329,9 +246,65 @@ ExitCode run(const CLI::App& app, const CheckCommand& command) {
                 complain(app, printable(fmt::format("{}: {}", item.file.string(), finding.text)));
         }
     }
+    for (const CheckFix& fix : results.fixes) {
+        if (command.general.quiet && !fix.error.empty())
+            complain(app, printable(fmt::format("not fixed {}: {}", fix.file.string(), fix.error)));
+    }
     if (!command.general.quiet) print_text(report_text(results, command.format));
-    checker.write_cache();
     return exit_code_of(app, command, results);
+}
+
+// Shards.
+
+/// The facts that all shards share.
+PartJob job_of(const CLI::App& app, const CheckCommand& command, const CheckProject& project,
+               const WalkedFiles& walked) {
+    PartJob job;
+    job.version = version_and_commit();
+    job.count = command.shard->count;
+    job.arguments = shared_options(app);
+    for (const fs::path& path : command.paths)
+        job.files.push_back(path.string());
+    job.inputs = {{project.file.string(), file_hash(project.file)},
+                  {"the checked folders", hash_of(walked)}};
+    return job;
+}
+
+ExitCode run_shard(const CLI::App& app, const CheckCommand& command, const CheckProject& project) {
+    const WalkedFiles walked = walk(command, project);
+    CheckPart part;
+    part.job = job_of(app, command, project, walked);
+    part.shard = command.shard->shard;
+    if (part.shard == 1) part.walked = walked;
+    const fs::path file = command.part.value_or(
+        fmt::format("relief-check.{}-{}-of-{}.part", part.job.hash(), part.shard, part.job.count));
+    Stages stages(command.general.quiet);
+    check_shard(walked, part, stages);
+    write_part(file, part);
+    if (!command.general.quiet) {
+        print_entry("part", printable(file.string()));
+        print_entry("checked", fmt::format("{} and {}", counted(part.models.size(), "model"),
+                                           counted(part.images.size(), "image")));
+    }
+    return ExitCode::done;
+}
+
+ExitCode run(const CLI::App& app, const CheckCommand& command) {
+    check_options(app, command);
+    if (command.lists_rules) return print_rules(command);
+    set_thread_limit(command.general.threads);
+    CheckProject project = project_of(command);
+    check_outputs(command, project);
+    if (command.shard) return run_shard(app, command, project);
+    if (command.writes_baseline) project.baseline.clear();
+    std::optional<CheckCache> cache;
+    if (command.cache) cache.emplace(*command.cache);
+    Stages stages(command.general.quiet);
+    CheckResults results =
+        results_of(command, project, walk(command, project), reading_source(cache), stages);
+    const ExitCode code = finish(app, command, project, results);
+    if (cache) cache->write();
+    return code;
 }
 
 void add_options(CLI::App& app, CheckCommand& command) {
@@ -384,6 +357,14 @@ void add_options(CLI::App& app, CheckCommand& command) {
         .group(fix);
     add_switch(app, "--in-place", command.in_place, "Replace the files by the fixed ones.")
         .group(fix);
+    add_shard_option(app, command.shard,
+                     "Check only part K of N of the files, and write the findings as a file for "
+                     "relief merge, which makes the reports that the same command without --shard "
+                     "would have made.");
+    add_path(app, "--part", command.part,
+             "The file of the shard. Default: relief-check.JOB-K-of-N.part in the current folder, "
+             "where JOB is a hash of inputs and options.")
+        .group("Several machines");
     add_general_options(app, command.general);
     set_examples(app, {"relief check data", "relief check --rules",
                        "relief check data/vase.obj data/scenes --strict --notes",
@@ -391,7 +372,82 @@ void add_options(CLI::App& app, CheckCommand& command) {
                        "relief check data --cache out/check-cache.json --format json"});
 }
 
+/// Reads the command line of the shards.
+CheckCommand parse_check(const PartJob& job) {
+    CLI::App app;
+    CheckCommand command;
+    add_options(app, command);
+    try {
+        app.parse(std::vector<std::string>(job.arguments.rbegin(), job.arguments.rend()));
+    } catch (const CLI::Error& error) {
+        throw UsageError(error.what());
+    }
+    command.paths.assign(job.files.begin(), job.files.end());
+    check_options(app, command);
+    return command;
+}
+
+std::vector<CheckPart> read_parts(const MergeCommand& merge, std::vector<fs::path>& names) {
+    std::vector<CheckPart> parts;
+    std::vector<PartName> identities;
+    for (const fs::path& file : merge.parts)
+        parts.push_back(read_check_part(file));
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        identities.push_back({merge.parts[i], &parts[i].job, parts[i].shard});
+    std::vector<CheckPart> sorted;
+    for (const std::size_t index : sorted_parts(identities, "check")) {
+        names.push_back(merge.parts[index]);
+        sorted.push_back(std::move(parts[index]));
+    }
+    return sorted;
+}
+
+ExitCode run_merge(const CLI::App& app, const MergeCommand& merge) {
+    if (merge.parts.empty())
+        throw UsageError("PART: is missing", "give the files that relief check --shard wrote");
+    set_thread_limit(merge.general.threads);
+    std::vector<fs::path> names;
+    const std::vector<CheckPart> parts = read_parts(merge, names);
+    const PartJob& job = parts.front().job;
+    CheckCommand command = parse_check(job);
+    command.general = merge.general;
+    CheckProject project = project_of(command);
+    check_outputs(command, project);
+    if (job.inputs.empty() || job.inputs.front().second != file_hash(project.file)) {
+        throw failure(project.file, "has changed since the shards ran", "repeat all shards");
+    }
+    if (command.writes_baseline) project.baseline.clear();
+    Stages stages(merge.general.quiet);
+    CheckResults results =
+        results_of(command, project, parts.front().walked, merged_source(parts, names), stages);
+    const ExitCode code = finish(app, command, project, results);
+    if (merge.keeps_parts || code == ExitCode::failed) return code;
+    for (const fs::path& file : names) {
+        std::error_code error;
+        fs::remove(file, error);
+        if (error) warn(app, file.string() + ": cannot be removed");
+    }
+    return code;
+}
+
+void add_merge_options(CLI::App& app, MergeCommand& merge) {
+    add_files(app, "PART...", merge.parts,
+              "All parts of one check, in any order, as relief check --shard wrote them. They are "
+              "removed when the reports are written, unless the exit code is 1.");
+    add_switch(app, "--keep", merge.keeps_parts, "Do not remove the parts.").group("Output");
+    add_general_options(app, merge.general);
+    set_examples(app, {"relief check data --shard 1/2 --report out/check.html",
+                       "relief check data --shard 2/2 --report out/check.html",
+                       "relief merge relief-check.*.part"});
+}
+
 }  // namespace
+
+Command add_merge_check_command(CLI::App& tool) {
+    return add_command<MergeCommand>(
+        tool, "merge", "Makes the reports of relief check from the parts of its shards.",
+        add_merge_options, run_merge);
+}
 
 Command add_check_files_command(CLI::App& tool) {
     return add_command<CheckCommand>(

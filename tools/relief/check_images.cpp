@@ -32,10 +32,8 @@ constexpr int min_wasteful_size = 64;
 
 /// An image with what is known about it.
 struct KnownImage {
-    Image image;
-    std::map<std::string, std::string> metadata;
+    const ImageFacts& facts;
     MapDescription stated;
-    std::string color_tag;
     NamedMap named;  ///< By the name of its file.
     const std::vector<ImageRole>& roles;
 };
@@ -52,12 +50,9 @@ bool is_gltf_normal(const ImageRole& role) {
     return role.is_gltf && is_normal_slot(role.slot);
 }
 
-/// Returns whether an image is used or named as normals in tangent space.
-bool should_be_normals(const KnownImage& known) {
-    if (!known.roles.empty())
-        return has_role(known, [](const ImageRole& role) { return is_normal_slot(role.slot); });
-    if (known.stated.kind) return *known.stated.kind == MapKind::normal;
-    return known.named.kind == MapKind::normal;
+/// Returns whether an image that no material uses should be normals in tangent space.
+bool is_called_normals(const MapDescription& stated, const NamedMap& named) {
+    return stated.kind ? *stated.kind == MapKind::normal : named.kind == MapKind::normal;
 }
 
 /// Returns the kinds of maps in a slot. None if it accepts any map.
@@ -110,8 +105,7 @@ std::string wrong_kind(const KnownImage& known, const ImageRole& role) {
     if (const auto wrong = stated_wrong_kind(accepted, known.stated)) return wrong->problem;
     // check_normal_map() judges normals.
     if (is_normal_slot(role.slot)) return "";
-    const auto content = unstated_content(known.image, known.stated);
-    return content == tangent_normals ? normals_problem : "";
+    return known.facts.content == tangent_normals ? normals_problem : "";
 }
 
 std::string slot_text(const ImageRole& role) {
@@ -120,25 +114,38 @@ std::string slot_text(const ImageRole& role) {
                                  : fmt::format("the {} of material '{}'", slot, role.material);
 }
 
+struct EmbeddedImage {
+    std::string place;  ///< "image 2 'bricks'"
+    std::size_t index = 0;
+    bool can_be_replaced = false;
+};
+
 /// Adds the findings of one image to those of a file.
 class ImageCheck {
   public:
-    /// \param place  of an embedded image
-    ImageCheck(const KnownImage& known, std::string place, CheckedItem& item)
-        : known_(known), place_(std::move(place)), item_(item) {}
+    ImageCheck(const KnownImage& known, CheckedItem& item)
+        : known_(known), is_fixable_(can_be_fixed(item.file)), item_(item) {}
+
+    /// Of an embedded image.
+    ImageCheck(const KnownImage& known, const EmbeddedImage& image, CheckedItem& item)
+        : known_(known),
+          place_(image.place),
+          index_(image.index),
+          is_fixable_(image.can_be_replaced && can_be_fixed(item.file)),
+          item_(item) {}
 
     void run() {
         check_roles();
         check_size();
-        if (should_be_normals(known_)) check_normals();
+        if (known_.facts.are_normals) check_normals();
         if (known_.roles.empty()) check_name();
     }
 
   private:
     void add(const CheckRule& rule, CheckSeverity severity, const std::string& text,
              std::size_t count = 1) {
-        item_.findings.push_back({&rule, severity, place_, text, count,
-                                  place_.empty() && rule.is_fixable() && can_be_fixed(item_.file)});
+        item_.findings.push_back(
+            {&rule, severity, place_, text, count, rule.is_fixable() && is_fixable_, index_});
     }
     void add(const char* id, const std::string& text) {
         const CheckRule& rule = rule_named(id);
@@ -164,8 +171,8 @@ class ImageCheck {
     }
 
     void check_material() {
-        const auto stated = known_.metadata.find("relief:material");
-        if (stated == known_.metadata.end() || known_.roles.empty()) return;
+        const auto stated = known_.facts.metadata.find("relief:material");
+        if (stated == known_.facts.metadata.end() || known_.roles.empty()) return;
         const bool is_used = std::ranges::any_of(
             known_.roles, [&](const ImageRole& role) { return role.material == stated->second; });
         const auto other = std::ranges::find_if(known_.roles, [&](const ImageRole& role) {
@@ -178,10 +185,9 @@ class ImageCheck {
 
     void check_size() {
         const auto is_power = [](int side) { return (side & (side - 1)) == 0; };
-        const Image& image = known_.image;
-        if (known_.roles.empty() || (is_power(image.width) && is_power(image.height))) return;
-        add("texture/not-power-of-two",
-            fmt::format("has {} x {} texels", image.width, image.height));
+        const glm::ivec2 size = known_.facts.texels;
+        if (known_.roles.empty() || (is_power(size.x) && is_power(size.y))) return;
+        add("texture/not-power-of-two", fmt::format("has {} x {} texels", size.x, size.y));
     }
 
     /// Maps that no model uses must be what their name says.
@@ -192,16 +198,12 @@ class ImageCheck {
         // "rock_nrm_rgh" has roughness in a fourth channel.
         const bool are_normals = *known_.named.kind == MapKind::normal ||
                                  named_map(known_.named.set).kind == MapKind::normal;
-        if (!are_normals && unstated_content(known_.image, known_.stated) == tangent_normals)
+        if (!are_normals && known_.facts.content == tangent_normals)
             add("map/contradicts-name", normals_problem);
     }
 
     void check_normals() {
-        std::map<std::string, std::string> metadata = known_.metadata;
-        if (known_.named.green && !known_.stated.green)
-            metadata["relief:green"] = enum_name(*known_.named.green);
-        const NormalMapCheck check = check_normal_map(known_.image, metadata, known_.color_tag);
-        for (const MapConditionCount& found : check.conditions)
+        for (const MapConditionCount& found : known_.facts.conditions)
             add_condition(found);
     }
 
@@ -213,7 +215,7 @@ class ImageCheck {
                 : to_string(PlacedFinding{"",
                                           {std::string(info.word), std::string(info.element),
                                            std::string(info.meaning), found.count, found.first},
-                                          known_.image.width});
+                                          known_.facts.texels.x});
         if (found.condition == MapCondition::green_down && has_role(known_, is_gltf_normal)) {
             const CheckRule& rule = rule_named("texture/green-down");
             return add(rule, rule.severity, text, found.count);
@@ -223,7 +225,7 @@ class ImageCheck {
     }
 
     [[nodiscard]] CheckSeverity severity_of(const CheckRule& rule, MapCondition condition) const {
-        const int size = std::min(known_.image.width, known_.image.height);
+        const int size = std::min(known_.facts.texels.x, known_.facts.texels.y);
         switch (condition) {
             case MapCondition::texel_facing_back:
                 // The high surface of a bake may lean so far. Maps of relief say what they are.
@@ -237,8 +239,10 @@ class ImageCheck {
         }
     }
 
-    const KnownImage& known_;
+    KnownImage known_;
     std::string place_;
+    std::optional<std::size_t> index_;
+    bool is_fixable_;
     CheckedItem& item_;
 };
 
@@ -259,59 +263,124 @@ std::uint64_t texture_bytes(const fs::path& file) {
     return bytes;
 }
 
-void check_file(const fs::path& file, const std::vector<ImageRole>& roles, CheckedItem& item) {
+/// Adds what the texels show.
+void measure_texels(const Image& image, const std::string& color_tag, const NamedMap& named,
+                    bool judges_content, ImageFacts& facts) {
+    const MapDescription stated = read_description(facts.metadata);
+    if (judges_content) facts.content = unstated_content(image, stated);
+    if (!facts.are_normals) return;
+    std::map<std::string, std::string> metadata = facts.metadata;
+    if (named.green && !stated.green) metadata["relief:green"] = enum_name(*named.green);
+    facts.conditions = check_normal_map(image, metadata, color_tag).conditions;
+}
+
+/// Returns whether a check of an image with these uses needs its content.
+bool needs_content(const std::vector<ImageRole>& roles, const NamedMap& named) {
+    if (roles.empty()) return named.kind.has_value();
+    return std::ranges::any_of(roles, [](const ImageRole& role) {
+        return !is_normal_slot(role.slot) && !kinds_in(role).empty();
+    });
+}
+
+void measure(const fs::path& file, bool judges_content, std::optional<bool> as_normals,
+             ImageFacts& facts) {
     std::error_code error;
     // A pipe would block.
     if (fs::exists(file, error) && !fs::is_regular_file(file, error))
         throw FileError(file, "is not a regular file");
     const ImageInfo info = read_image_info(file);
-    KnownImage known{{},
-                     info.metadata,
-                     read_description(info.metadata),
-                     color_tag(file),
-                     named_map(file.stem().string()),
-                     roles};
-    known.image =
-        should_be_normals(known) ? read_normal_map_image(file) : read_image(file, ImageUse::data);
-    item.image = figures_of(info, texture_bytes(file));
-    ImageCheck(known, "", item).run();
+    const NamedMap named = named_map(file.stem().string());
+    facts.metadata = info.metadata;
+    facts.are_normals =
+        as_normals.value_or(is_called_normals(read_description(info.metadata), named));
+    const Image image =
+        facts.are_normals ? read_normal_map_image(file) : read_image(file, ImageUse::data);
+    facts.figures = figures_of(info, texture_bytes(file));
+    facts.texels = {image.width, image.height};
+    measure_texels(image, color_tag(file), named, judges_content, facts);
 }
 
 }  // namespace
 
-CheckedItem check_image_file(const fs::path& file, const std::vector<ImageRole>& roles) {
-    CheckedItem item;
-    item.file = file;
-    item.kind = CheckedKind::image;
-    item.inputs.emplace(file, stamp_of(file));
+std::string_view image_suffix(std::span<const std::byte> bytes) {
+    const auto begins = [&](std::initializer_list<int> start) {
+        return bytes.size() >= start.size() &&
+               std::ranges::equal(start, bytes.first(start.size()), {}, {},
+                                  [](std::byte byte) { return std::to_integer<int>(byte); });
+    };
+    if (begins({0x89, 'P', 'N', 'G'})) return ".png";
+    return begins({0xFF, 0xD8}) ? ".jpg" : "";
+}
+
+std::optional<bool> are_used_as_normals(const std::vector<ImageRole>& roles) {
+    if (roles.empty()) return std::nullopt;
+    return std::ranges::any_of(roles,
+                               [](const ImageRole& role) { return is_normal_slot(role.slot); });
+}
+
+ImageFacts measure_image_file(const fs::path& file, std::optional<bool> as_normals,
+                              bool judges_content) {
+    ImageFacts facts;
+    facts.file = file;
+    facts.is_unused = !as_normals;
+    facts.are_normals = as_normals.value_or(false);
     try {
-        check_file(file, roles, item);
+        measure(file, judges_content, as_normals, facts);
     } catch (const Cancelled&) {
         throw;
     } catch (const std::bad_alloc&) {
-        item.is_unreadable = true;
-        item.add(rule_named("file/unreadable"), "", "out of memory");
+        facts.fault = "out of memory";
     } catch (const std::exception& error) {
-        item.is_unreadable = true;
-        item.add(rule_named("file/unreadable"), "", reason_of(error.what(), file));
+        facts.fault = reason_of(error.what(), file);
     }
+    return facts;
+}
+
+CheckedItem judge_image(const ImageFacts& facts, const std::vector<ImageRole>& roles) {
+    CheckedItem item;
+    item.file = facts.file;
+    item.kind = CheckedKind::image;
+    if (!facts.fault.empty()) {
+        item.is_unreadable = true;
+        item.add(rule_named("file/unreadable"), "", facts.fault);
+        return item;
+    }
+    item.image = facts.figures;
+    const KnownImage known{facts, read_description(facts.metadata),
+                           named_map(facts.file.stem().string()), roles};
+    ImageCheck(known, item).run();
     return item;
 }
 
-ImageFigures check_embedded_image(const GltfImage& image, const std::string& place,
+CheckedItem check_image_file(const fs::path& file, const std::vector<ImageRole>& roles) {
+    const FileStamp stamp = stamp_of(file);
+    const bool judges_content = needs_content(roles, named_map(file.stem().string()));
+    CheckedItem item =
+        judge_image(measure_image_file(file, are_used_as_normals(roles), judges_content), roles);
+    item.inputs.emplace(file, stamp);
+    return item;
+}
+
+ImageFigures check_embedded_image(const GltfImage& image, std::size_t index,
                                   const std::vector<ImageRole>& roles, CheckedItem& item) {
+    const std::string name = image.name.empty() ? "" : fmt::format(" '{}'", image.name);
+    const std::string place = fmt::format("image {}{}", index, name);
     const auto& bytes = std::get<std::vector<std::byte>>(image.source);
     try {
         if (!image.fault.empty()) throw InvalidInput(image.fault);
         const ImageInfo info = read_image_info(bytes, place);
-        const KnownImage known{read_image(bytes, place, ImageUse::data),
-                               info.metadata,
-                               read_description(info.metadata),
-                               "",
-                               named_map(image.name),
-                               roles};
-        ImageCheck(known, place, item).run();
-        return figures_of(info, 0);
+        const Image texels = read_image(bytes, place, ImageUse::data);
+        const NamedMap named = named_map(image.name);
+        ImageFacts facts;
+        facts.metadata = info.metadata;
+        facts.figures = figures_of(info, 0);
+        facts.texels = {texels.width, texels.height};
+        const MapDescription stated = read_description(info.metadata);
+        facts.are_normals = are_used_as_normals(roles).value_or(is_called_normals(stated, named));
+        measure_texels(texels, "", named, needs_content(roles, named), facts);
+        const EmbeddedImage embedded{place, index, !roles.empty() && !image_suffix(bytes).empty()};
+        ImageCheck({facts, stated, named, roles}, embedded, item).run();
+        return facts.figures;
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& error) {

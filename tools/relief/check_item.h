@@ -28,7 +28,8 @@ struct CheckFinding {
     std::string place;  ///< "mesh 'Body' primitive 0", "image 3"; empty for the whole file.
     std::string text;   ///< "2 x collapsed triangle (triangle 3, 17): has two corners ..."
     std::size_t count = 1;
-    bool is_fixable = false;  ///< --fix can run the remedy on the file.
+    bool is_fixable = false;  ///< --fix can run the remedy on the file or the embedded image.
+    std::optional<std::size_t> image = std::nullopt;  ///< Its index if it is embedded.
 };
 
 /// The use of an image by a material.
@@ -98,9 +99,13 @@ bool can_be_fixed(const std::filesystem::path& file);
 /// Returns a rule that exists.
 const CheckRule& rule_named(std::string_view id);
 
-/// The content of the cache, without the inputs.
+/// The content of the cache and of the parts of shards, without the inputs.
 Json json_of(const CheckedItem& item);
-/// \throws nlohmann::json::exception if the content is not that of json_of()
+/// \throws nlohmann::json::exception or std::out_of_range if the content is not that of json_of()
 CheckedItem item_of(const Json& json);
+
+Json json_of(const ImageFigures& image);
+ImageFigures image_figures_of(const Json& json);
+CheckedKind checked_kind_of(const Json& json);
 
 }  // namespace relief::tools

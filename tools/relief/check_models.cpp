@@ -262,9 +262,7 @@ class DocumentCheck {
                 continue;
             }
             if (image.fault.find("leads out") != std::string::npos) continue;  // As before.
-            const std::string name = image.name.empty() ? "" : fmt::format(" '{}'", image.name);
-            item_.model.embedded[i] =
-                check_embedded_image(image, fmt::format("image {}{}", i, name), roles, item_);
+            item_.model.embedded[i] = check_embedded_image(image, i, roles, item_);
         }
     }
 

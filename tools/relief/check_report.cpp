@@ -117,7 +117,13 @@ Json results_json(const CheckResults& results) {
                  return {{"file", fix.file.string()},
                          {"output", fix.output.string()},
                          {"command", fix.command},
-                         {"error", fix.error}};
+                         {"error", fix.error},
+                         {"findings", json_list(fix.findings, [](const FixedFinding& one) -> Json {
+                              return {{"rule", one.rule},
+                                      {"place", one.place},
+                                      {"count", one.count},
+                                      {"remaining", one.remaining}};
+                          })}};
              })}};
 }
 
@@ -183,7 +189,8 @@ std::string github_of(const CheckResults& results) {
                 with_place(finding) + (remedy.empty() ? "" : "\n-> " + remedy);
             text += fmt::format(
                 "::{} file={},title={}::{}\n", is_note ? "notice" : severity_name(finding.severity),
-                workflow_text(item.file.generic_string(), true),
+                // GitHub knows files by their names in the repository.
+                workflow_text(item.file.lexically_normal().generic_string(), true),
                 workflow_text(finding.rule->id, true), workflow_text(message, false));
         }
     }
@@ -222,7 +229,12 @@ std::string remedy_text(const CheckedItem& item, const CheckFinding& finding) {
     if (!finding.rule->is_fixable()) return std::string(remedy);
     const bool is_of_image =
         finding.rule->id.starts_with("map/") || finding.rule->id.starts_with("texture/");
-    if (is_of_image && item.kind == CheckedKind::model) return "export it again";  // Embedded.
+    if (is_of_image && item.kind == CheckedKind::model) {
+        // Of an embedded image, which the command alone does not reach.
+        if (!finding.is_fixable || finding.severity < CheckSeverity::warning)
+            return "export it again";
+        return fmt::format("relief check {} --fix -o fixed", quoted(as_argument(item.file)));
+    }
     return with_files(remedy, quoted(as_argument(item.file)), output_name(item.file));
 }
 

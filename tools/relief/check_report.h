@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "check_item.h"
@@ -30,12 +31,21 @@ inline constexpr auto enum_names<tools::CheckFormat> =
 
 namespace tools {
 
-/// A remedy that --fix ran.
+/// A finding that --fix should remove, and what a check of the fixed file found.
+struct FixedFinding {
+    std::string_view rule;
+    std::string place;
+    std::size_t count = 0;
+    std::size_t remaining = 0;  ///< The count after the remedy.
+};
+
+/// The remedies that --fix ran on a file.
 struct CheckFix {
     std::filesystem::path file;
     std::filesystem::path output;
     std::string command;
-    std::string error;  ///< Empty if it succeeded.
+    std::string error;  ///< Empty if all findings are removed, and no others came.
+    std::vector<FixedFinding> findings;
 };
 
 /// The results of all files.

@@ -22,15 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::optional<CheckedKind> kind_of(const fs::path& file) {
-    static constexpr std::array<std::string_view, 6> models = {".glb", ".gltf", ".obj",
-                                                               ".ply", ".stl",  ".off"};
-    const std::string extension = extension_of(file);
-    if (std::ranges::find(models, extension) != models.end()) return CheckedKind::model;
-    if (has_image_extension(file)) return CheckedKind::image;
-    return std::nullopt;
-}
-
 /// Collects the files of folders.
 class Walk {
   public:
@@ -39,7 +30,7 @@ class Walk {
     void add_given(const fs::path& path) {
         std::error_code error;
         if (fs::is_directory(path, error)) return add_folder(path);
-        const auto kind = kind_of(path);
+        const auto kind = kind_by_name(path);
         if (!kind) {
             throw UsageError(
                 fmt::format("{}: is neither a folder nor a model or an image", path.string()),
@@ -81,7 +72,7 @@ class Walk {
         std::error_code ignored;
         const bool is_folder = fs::is_directory(entry, ignored);
         if (!is_folder) {
-            const auto kind = kind_of(entry);
+            const auto kind = kind_by_name(entry);
             if (kind) add_file(entry, *kind);
             return;
         }
@@ -142,6 +133,15 @@ void pair_by_name(std::vector<CheckInput>& files) {
 }
 
 }  // namespace
+
+std::optional<CheckedKind> kind_by_name(const fs::path& file) {
+    static constexpr std::array<std::string_view, 6> models = {".glb", ".gltf", ".obj",
+                                                               ".ply", ".stl",  ".off"};
+    const std::string extension = extension_of(file);
+    if (std::ranges::find(models, extension) != models.end()) return CheckedKind::model;
+    if (has_image_extension(file)) return CheckedKind::image;
+    return std::nullopt;
+}
 
 WalkedFiles walk_files(const std::vector<fs::path>& given,
                        const std::function<bool(const fs::path&)>& excludes) {

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,9 @@ struct WalkedFiles {
 /// \throws UsageError if a given file is neither a model nor an image by its extension
 WalkedFiles walk_files(const std::vector<std::filesystem::path>& given,
                        const std::function<bool(const std::filesystem::path&)>& excludes);
+
+/// Returns what a file is by its extension; nothing if it is neither a model nor an image.
+std::optional<CheckedKind> kind_by_name(const std::filesystem::path& file);
 
 /// Returns whether a path with '/' matches a pattern: '*' stands for any letters but '/', '?' for
 /// one of them, and "**" for any letters. A pattern without '/' is for the name alone.

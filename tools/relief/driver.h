@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The tool relief: its own commands, make, check and farm, and the other tools as commands.
+/// The tool relief: its own commands, make, check, merge and farm, and the other tools as commands.
 /// Tests: tests/tools/relief_make_test.cpp, farm_test.cpp.
 #pragma once
 
@@ -41,6 +41,7 @@ std::filesystem::path sibling_program(const std::string& name);
 
 Command add_make_command(CLI::App& tool);
 Command add_check_files_command(CLI::App& tool);
+Command add_merge_check_command(CLI::App& tool);
 Command add_farm_command(CLI::App& tool);
 
 /// Adds the commands of sibling_tools, for the help page.
@@ -53,8 +54,8 @@ Command add_accuracy_tool(CLI::App& tool);
 inline Tool relief_driver() {
     return {"relief",
             "Makes assets from dense meshes, checks assets, and runs the other tools of relief.",
-            {add_make_command, add_check_files_command, add_farm_command, add_mesh_tool,
-             add_bake_tool, add_view_tool, add_accuracy_tool}};
+            {add_make_command, add_check_files_command, add_merge_check_command, add_farm_command,
+             add_mesh_tool, add_bake_tool, add_view_tool, add_accuracy_tool}};
 }
 
 }  // namespace relief::tools

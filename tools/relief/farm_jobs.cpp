@@ -36,7 +36,7 @@ std::size_t shard_place(const std::vector<std::string>& words) {
     const bool has_two = words.size() > 1;
     if (has_two && words[0] == "bake" && words[1] == "mesh") return 2;
     if (has_two && words[0] == "mesh" && words[1] == "process") return 2;
-    return words[0] == "make" ? 1 : 0;
+    return words[0] == "make" || words[0] == "check" ? 1 : 0;
 }
 
 /// Adds --threads to a command, unless it has the option.
@@ -61,12 +61,14 @@ void add_job(const std::string& name, std::vector<std::string> words, std::size_
         return;
     }
     const std::size_t place = shard_place(words);
-    const bool is_bake = words[0] == "bake";
-    std::vector<std::string> merge = {"bake", "merge", fmt::format("--threads={}", threads)};
+    // Lists of assets need no merge.
+    const bool has_parts = words[0] == "bake" || words[0] == "check";
+    std::vector<std::string> merge = {"merge", fmt::format("--threads={}", threads)};
+    if (words[0] == "bake") merge.insert(merge.begin(), "bake");
     for (std::size_t shard = 1; shard <= shards; ++shard) {
         std::vector<std::string> command = words;
         std::vector<std::string> options = {fmt::format("--shard={}/{}", shard, shards)};
-        if (is_bake) {
+        if (has_parts) {
             const std::string part =
                 (parts / fmt::format("job-{}-{}-of-{}.part", job + 1, shard, shards)).string();
             options.push_back("--part=" + part);
@@ -77,7 +79,7 @@ void add_job(const std::string& name, std::vector<std::string> words, std::size_
         jobs.tasks.push_back(
             {fmt::format("{} {}/{}", name, shard, shards), program_of(command), job, false});
     }
-    if (is_bake) merges.push_back({name + " merge", program_of(merge), job, true});
+    if (has_parts) merges.push_back({name + " merge", program_of(merge), job, true});
 }
 
 void read_job(const JsonCursor& json, std::optional<std::size_t> shards, unsigned threads,
@@ -96,7 +98,7 @@ void read_job(const JsonCursor& json, std::optional<std::size_t> shards, unsigne
     if (const auto given = json.find("shards")) {
         count = static_cast<std::size_t>(given->whole_number(1, max_shards));
         if (count > 1 && !can_be_divided)
-            given->fail("only bake mesh, make and mesh process can be divided");
+            given->fail("only bake mesh, check, make and mesh process can be divided");
     }
     const auto name = json.find("name");
     add_job(name ? name->text() : fmt::format("job {}", jobs.names.size() + 1), words, count,
