@@ -141,7 +141,7 @@ TEST(Farm, RefusesWhatItCannotDivide) {
         {{jobs("a.json", "{"), 1, "a.json: "},
          {jobs("b.json", R"({"jobs": []})"), 1, "b.json: /jobs: is empty"},
          {jobs("c.json", R"({"jobs": [{"command": ["view", "a"], "shards": 2}]})"), 1,
-          "c.json: /jobs/0/shards: only bake mesh, make and mesh process can be divided"},
+          "c.json: /jobs/0/shards: only bake mesh, check, make and mesh process can be divided"},
          {jobs("d.json", R"({"jobs": [{"command": ["farm", "d.json"]}]})"), 1,
           "d.json: /jobs/0/command: must begin with a command of relief"},
          {jobs("e.json", R"({"jobs": [{"command": []}]})"), 1, "e.json: /jobs/0/command: is empty"},
@@ -215,6 +215,82 @@ TEST(FarmOfParallel, ContinuesWhenAFullDiskHasSpaceAgain) {
     EXPECT_EQ(done.exit_code, 0) << done.error;
     EXPECT_EQ(bash(workplace, "diff -r whole out").out, "");
     EXPECT_EQ(bash(workplace, "find full/farm/parts -type f; umount full").out, "");
+}
+
+/// Puts programs of a Slurm that is not there into PATH: sbatch runs all tasks of an array at once,
+/// and squeue says what the file "queue" holds, and fails if it does not exist.
+std::string fake_slurm(const Workplace& workplace) {
+    std::filesystem::create_directory(workplace / "fake");
+    workplace.write("fake/sbatch", R"(#!/bin/bash
+number=$((100 + $(ls submitted 2>/dev/null | wc -l)))
+mkdir -p submitted && touch submitted/$number
+[ ! -e sbatch-fails ] || [ $number -lt 101 ] || exit 1
+for word; do
+    [[ $word != --array=* ]] || last=${word##*-}
+done
+for ((task = 1; task <= last; ++task)); do
+    [ -e paused ] || SLURM_ARRAY_TASK_ID=$task bash -- "$word" >/dev/null 2>&1
+done
+echo $number
+)");
+    workplace.write("fake/squeue", R"(#!/bin/bash
+[ ! -e hangs ] || exec sleep 1000
+cat queue && echo 99
+)");
+    bash(workplace, "chmod +x fake/*");
+    return "PATH=$PWD/fake:$PATH\n";
+}
+
+TEST(FarmOfASilentSlurm, IsGivenUpAndContinues) {
+    const Workplace workplace;
+    bake_whole(workplace);
+    const std::string path = fake_slurm(workplace);
+    write_jobs(workplace, "jobs.json",
+               json::array({bake_job("out/a.png", 2), bake_job("out/b.png", 1)}));
+    const std::string line =
+        path + "relief farm jobs.json --engine slurm --folder farm --submit --silence 0.02 ";
+    // The controller dies after the arrays were submitted.
+    workplace.write("paused", "");
+    const ProgramResult silent = bash(workplace, line + "--report report.json");
+    EXPECT_EQ(silent.exit_code, 1);
+    EXPECT_THAT(silent.error,
+                HasSubstr("relief: warning: Slurm does not answer (squeue ended with 1); asking "
+                          "again for 0.02 min\n"));
+    EXPECT_THAT(silent.error,
+                HasSubstr("relief: error: Slurm has not answered for 0.02 min (squeue ended with "
+                          "1); tasks go on without relief, and the same command continues\n"));
+    EXPECT_THAT(silent.error, Not(HasSubstr("failed, see")));
+    const json report = json::parse(workplace.read("report.json"));
+    EXPECT_EQ(report.at("failed"), 4);
+    EXPECT_EQ(report.at("given_up"), "Slurm has not answered for 0.02 min (squeue ended with 1)");
+    // It answers again: the arrays are in the queue, then they have ended.
+    workplace.write("queue", "100\n");
+    bash(workplace, "rm paused; (sleep 3; rm queue; echo 7 > queue) >/dev/null 2>&1 &");
+    const ProgramResult done = bash(workplace, line + "--report report.json");
+    EXPECT_EQ(done.exit_code, 0) << done.error;
+    EXPECT_EQ(done.error, "");
+    EXPECT_EQ(json::parse(workplace.read("report.json")).at("given_up"), nullptr);
+    EXPECT_EQ(bash(workplace, "diff -r whole out").out, "");
+    EXPECT_EQ(bash(workplace, "ls submitted").out, "100\n101\n102\n103\n");
+}
+
+TEST(FarmOfASilentSlurm, KnowsArraysThatWereSubmittedBeforeAFailure) {
+    const Workplace workplace;
+    bake_whole(workplace);
+    const std::string path = fake_slurm(workplace);
+    write_jobs(workplace, "jobs.json", json::array({bake_job("out/a.png", 2)}));
+    const std::string line =
+        path + "relief farm jobs.json --engine slurm --folder farm --submit --silence 0.02 ";
+    // The array of the shards is submitted, that of the merge is not.
+    workplace.write("sbatch-fails", "");
+    workplace.write("paused", "");
+    const ProgramResult failed = bash(workplace, line);
+    EXPECT_EQ(failed.exit_code, 1);
+    EXPECT_THAT(failed.error, HasSubstr("sbatch: failed with 1"));
+    EXPECT_EQ(workplace.read("farm/slurm/arrays.txt"), "100\n");
+    const ProgramResult silent = bash(workplace, line);
+    EXPECT_THAT(silent.error, HasSubstr("Slurm has not answered"));
+    EXPECT_EQ(bash(workplace, "ls submitted").out, "100\n101\n");
 }
 
 /// A Slurm of two nodes on this machine, without systemd and munge.
@@ -332,6 +408,56 @@ TEST(FarmOfSlurm, TwoFarmsInOneFolderDoNotDisturbEachOther) {
     EXPECT_EQ(first.exit_code, 0) << first.error;
     EXPECT_EQ(second.exit_code, 0) << second.error;
     EXPECT_EQ(bash(workplace, "diff -r whole out").out, "");
+}
+
+TEST_LABELS(slow);
+TEST(FarmOfSlurm, IsGivenUpWhenTheControllerDiesAndContinuesWhenItIsBack) {
+    if (!Slurm::is_possible()) GTEST_SKIP() << "Slurm is not installed, or this is not root";
+    const Workplace workplace;
+    bake_whole(workplace);
+    const Slurm slurm(workplace);
+    write_jobs(workplace, "jobs.json",
+               json::array({bake_job("out/a.png", 4), bake_job("out/b.png", 1)}));
+    const std::string line =
+        "relief farm jobs.json --engine slurm --folder farm --submit --silence 0.05 ";
+    ASSERT_EQ(bash(workplace, "relief farm jobs.json --engine slurm --folder farm").exit_code, 0);
+    // The second task kills the controller in its middle.
+    bash(workplace,
+         "sed -i '2i [ -e killed ] || { touch killed; kill -9 $(cat slurm/controller.pid); }' "
+         "farm/tasks/0/2.sh");
+    const ProgramResult silent = bash(workplace, line + "--report report.json");
+    EXPECT_EQ(silent.exit_code, 1);
+    EXPECT_THAT(silent.error, HasSubstr("relief: warning: Slurm does not answer"));
+    EXPECT_THAT(silent.error, HasSubstr("relief: error: Slurm has not answered for 0.05 min"));
+    EXPECT_NE(json::parse(workplace.read("report.json")).at("given_up"), nullptr);
+    ASSERT_EQ(bash(workplace, "slurmctld").exit_code, 0);
+    ASSERT_TRUE(Slurm::wait([&] { return bash(workplace, "squeue --noheader").exit_code == 0; }));
+    const ProgramResult done = bash(workplace, line + "--report report.json");
+    EXPECT_EQ(done.exit_code, 0) << done.error;
+    EXPECT_EQ(json::parse(workplace.read("report.json")).at("failed"), 0);
+    EXPECT_EQ(bash(workplace, "diff -r whole out").out, "");
+}
+
+TEST_LABELS(slow);
+TEST(FarmOfSlurm, ContinuesWhenAFullDiskHasSpaceAgain) {
+    if (!Slurm::is_possible()) GTEST_SKIP() << "Slurm is not installed, or this is not root";
+    const Workplace workplace;
+    bake_whole(workplace);
+    ASSERT_EQ(bash(workplace, "mkdir full").exit_code, 0);
+    if (bash(workplace, "mount -t tmpfs -o size=200k none full").exit_code != 0)
+        GTEST_SKIP() << "file systems cannot be mounted";
+    const Slurm slurm(workplace);
+    write_jobs(workplace, "jobs.json",
+               json::array({bake_job("out/a.png", 16), bake_job("out/b.png", 1)}));
+    const std::string line =
+        "relief farm jobs.json --engine slurm --folder full/farm --submit --retries 0";
+    const ProgramResult failed = bash(workplace, line);
+    EXPECT_EQ(failed.exit_code, 1);
+    ASSERT_EQ(bash(workplace, "mount -o remount,size=20M full").exit_code, 0);
+    const ProgramResult done = bash(workplace, line);
+    EXPECT_EQ(done.exit_code, 0) << done.error;
+    EXPECT_EQ(bash(workplace, "diff -r whole out").out, "");
+    EXPECT_EQ(bash(workplace, "find full/farm/parts -type f; umount full").out, "");
 }
 
 }  // namespace

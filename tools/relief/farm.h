@@ -33,7 +33,7 @@ struct FarmJobs {
 /// Reads a list of jobs, or the file of `relief make --job`.
 ///
 /// {"jobs": [{"name": "vase", "command": ["bake", "mesh", ...], "shards": 16}, ...]}; "name" and
-/// "shards" may be missing. A divided job is `bake mesh`, `make` or `mesh process`.
+/// "shards" may be missing. A divided job is `bake mesh`, `check`, `make` or `mesh process`.
 /// \param shards   of jobs that do not state their number
 /// \param parts    the folder for parts of bakes
 /// \param threads  of a task, unless its command states them
@@ -92,12 +92,23 @@ struct FarmLimits {
 void run_parallel(const FarmFolder& folder, const FarmLimits& limits);
 
 /// Writes and submits arrays of Slurm for all open tasks, and arrays of the merges that depend on
-/// them.
+/// them. Their numbers are stored in the folder, one by one.
 /// \return the numbers of the arrays
 /// \throws FileError if sbatch fails
 std::vector<std::string> submit_slurm(const FarmFolder& folder, const FarmLimits& limits);
 
-/// Returns whether an array is in the queue of Slurm, or if the queue cannot be read.
-bool is_queued(const std::vector<std::string>& arrays);
+/// Returns the arrays that were submitted last, also by an interrupted farm.
+std::vector<std::string> submitted_arrays(const FarmFolder& folder);
+
+/// An answer of Slurm's queue.
+struct QueueState {
+    bool has_answered = true;
+    bool has_arrays = false;
+    std::string problem;  ///< Why it has not answered.
+};
+
+/// Looks for arrays in the queue of Slurm.
+/// \throws FileError if squeue cannot be run
+QueueState look_into_queue(const std::vector<std::string>& arrays);
 
 }  // namespace relief::tools

@@ -39,6 +39,7 @@ struct FarmCommand {
     std::optional<std::filesystem::path> folder;
     FarmLimits limits;
     int retries = 2;
+    double silence_minutes = 10.0;
     bool submits = false;
     bool measures = false;
     bool cleans = false;
@@ -150,49 +151,81 @@ std::size_t open_count(const FarmFolder& folder) {
     return folder.open_tasks(false).size() + folder.open_tasks(true).size();
 }
 
-/// Waits until no array is in the queue.
-void wait_for(const FarmFolder& folder, const std::vector<std::string>& arrays, std::size_t all,
-              Stages& stages) {
-    std::chrono::seconds pause(1);
-    constexpr std::chrono::seconds longest(10);
-    while (is_queued(arrays)) {
-        const std::size_t done = all - open_count(folder);
-        stages.show_progress("farm", static_cast<double>(done) / static_cast<double>(all),
-                             fmt::format("{} of {} tasks", done, all));
-        std::this_thread::sleep_for(pause);
-        pause = std::min(2 * pause, longest);
+/// Waits until no array is in the queue, or until Slurm has not answered for too long.
+class QueueWait {
+  public:
+    QueueWait(const CLI::App& app, const FarmCommand& command, const FarmFolder& folder,
+              std::size_t all, Stages& stages)
+        : app_(app), command_(command), folder_(folder), all_(all), stages_(stages) {}
+
+    /// \return why Slurm was given up; empty if the arrays have ended
+    std::string run(const std::vector<std::string>& arrays) {
+        std::chrono::milliseconds pause(1000);
+        constexpr std::chrono::milliseconds longest(10'000);
+        while (true) {
+            const QueueState state = look_into_queue(arrays);
+            if (state.has_answered && !state.has_arrays) break;
+            if (!is_patient(state)) return given_up(state);
+            show_progress();
+            std::this_thread::sleep_for(silent_since_ ? std::min(pause, limit() / 4) : pause);
+            pause = std::min(2 * pause, longest);
+        }
+        stages_.clear_progress();
+        return "";
     }
-    stages.clear_progress();
-}
 
-/// The arrays that an interrupted farm submitted.
-std::vector<std::string> submitted_before(const std::filesystem::path& file) {
-    std::vector<std::string> arrays;
-    std::ifstream stream(file);
-    for (std::string number; stream >> number;) {
-        if (std::ranges::all_of(number, [](char digit) { return digit >= '0' && digit <= '9'; }))
-            arrays.push_back(number);
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    [[nodiscard]] std::chrono::milliseconds limit() const {
+        return std::chrono::milliseconds(
+            static_cast<std::int64_t>(60'000.0 * command_.silence_minutes));
     }
-    return arrays;
-}
 
-void run_engine(const FarmCommand& command, const FarmFolder& folder, const FarmLimits& limits,
-                std::size_t all, Stages& stages) {
-    if (command.engine == FarmEngine::parallel) return run_parallel(folder, limits);
-    const std::vector<std::string> arrays = submit_slurm(folder, limits);
-    std::ofstream(folder.path() / "slurm" / "arrays.txt")
-        << fmt::format("{}\n", fmt::join(arrays, "\n"));
-    wait_for(folder, arrays, all, stages);
-}
+    /// Returns whether to ask again.
+    bool is_patient(const QueueState& state) {
+        if (state.has_answered) {
+            silent_since_.reset();
+            return true;
+        }
+        if (!silent_since_) {
+            silent_since_ = Clock::now();
+            warn(app_, fmt::format("Slurm does not answer ({}); asking again for {:.4g} min",
+                                   state.problem, command_.silence_minutes));
+        }
+        return Clock::now() - *silent_since_ < limit();
+    }
 
+    std::string given_up(const QueueState& state) const {
+        stages_.clear_progress();
+        return fmt::format("Slurm has not answered for {:.4g} min ({})", command_.silence_minutes,
+                           state.problem);
+    }
+
+    void show_progress() {
+        const std::size_t done = all_ - open_count(folder_);
+        stages_.show_progress("farm", static_cast<double>(done) / static_cast<double>(all_),
+                              fmt::format("{} of {} tasks", done, all_));
+    }
+
+    const CLI::App& app_;
+    const FarmCommand& command_;
+    const FarmFolder& folder_;
+    std::size_t all_;
+    Stages& stages_;
+    std::optional<Clock::time_point> silent_since_;
+};
+
+/// \param problem  why the farm was given up; empty if it has ended
 ExitCode finish_farm(const CLI::App& app, const FarmCommand& command, const FarmFolder& folder,
-                     const FarmJobs& jobs, int attempts) {
+                     const FarmJobs& jobs, int attempts, const std::string& problem) {
     constexpr std::size_t max_shown = 5;
     Json report = {{"tool", "relief farm"},
                    {"version", version()},
                    {"engine", name_of(command.engine, farm_engines)},
                    {"folder", folder.path().string()},
-                   {"attempts", attempts}};
+                   {"attempts", attempts},
+                   {"given_up", problem.empty() ? Json() : Json(problem)}};
     report.update(folder.report());
     const std::size_t open = open_count(folder);
     if (!command.quiet) {
@@ -200,6 +233,12 @@ ExitCode finish_farm(const CLI::App& app, const FarmCommand& command, const Farm
                                         counted(jobs.tasks.size(), "task")));
     }
     if (command.report.file) write_json(*command.report.file, report);
+    if (!problem.empty()) {
+        // Tasks that are not done may still run.
+        complain(app, fmt::format("{}; tasks go on without relief, and the same command continues",
+                                  problem));
+        return ExitCode::failed;
+    }
     std::size_t shown = 0;
     for (const bool merges : {false, true}) {
         for (const std::size_t task : folder.open_tasks(merges)) {
@@ -236,15 +275,18 @@ ExitCode run(const CLI::App& app, const FarmCommand& command) {
     }
     Stages stages(command.quiet);
     FarmLimits limits = command.limits;
-    if (command.engine == FarmEngine::slurm) {
-        wait_for(folder, submitted_before(path / "slurm" / "arrays.txt"), jobs.tasks.size(),
-                 stages);
-    }
-    if (command.measures) measure(folder, limits);
+    QueueWait queue(app, command, folder, jobs.tasks.size(), stages);
+    std::string problem;
+    if (command.engine == FarmEngine::slurm) problem = queue.run(submitted_arrays(folder));
+    if (command.measures && problem.empty()) measure(folder, limits);
     int attempts = 0;
-    for (; attempts <= command.retries && open_count(folder) > 0; ++attempts)
-        run_engine(command, folder, limits, jobs.tasks.size(), stages);
-    return finish_farm(app, command, folder, jobs, attempts);
+    for (; problem.empty() && attempts <= command.retries && open_count(folder) > 0; ++attempts) {
+        if (command.engine == FarmEngine::parallel)
+            run_parallel(folder, limits);
+        else
+            problem = queue.run(submit_slurm(folder, limits));
+    }
+    return finish_farm(app, command, folder, jobs, attempts, problem);
 }
 
 void add_options(CLI::App& app, FarmCommand& command) {
@@ -257,13 +299,13 @@ void add_options(CLI::App& app, FarmCommand& command) {
                "Who runs the tasks: Slurm; GNU parallel on this machine, or on others with --pass "
                "--sshlogin=...; or commands, which prints the lines of a shell for any other "
                "engine. Default: commands.");
-    add_value(app, "--shards", "N",
-              "The number of shards of bake mesh, make and mesh process, if the job does not say "
-              "it. Default: 1; for the file of relief make --job, one for each asset.",
-              [&command](const std::string& subject, const std::string& text) {
-                  command.shards =
-                      static_cast<std::size_t>(parse_integer(subject, text, 1, 100'000));
-              });
+    add_value(
+        app, "--shards", "N",
+        "The number of shards of bake mesh, check, make and mesh process, if the job does not say "
+        "it. Default: 1; for the file of relief make --job, one for each asset.",
+        [&command](const std::string& subject, const std::string& text) {
+            command.shards = static_cast<std::size_t>(parse_integer(subject, text, 1, 100'000));
+        });
     add_path(app, "--folder", command.folder,
              "The folder of scripts, logs and parts, on a file system that all machines share. "
              "Default: .relief-farm-HASH in the current folder.");
@@ -295,6 +337,10 @@ void add_options(CLI::App& app, FarmCommand& command) {
         .group(group);
     add_number(app, "--memory", "MB", command.limits.megabytes, {1.0, 1e9, "MB"},
                "Memory that Slurm reserves for a task. Default: that of Slurm.")
+        .group(group);
+    add_number(app, "--silence", "MINUTES", command.silence_minutes, {0.01, 1e5, "minutes"},
+               "Give up if Slurm's controller does not answer for so long, with the exit code 1. "
+               "Its tasks go on, and the same command continues. Default: 10.")
         .group(group);
     add_switch(app, "--measure", command.measures,
                "Run the first task here, and limit the time of the others to 4 times its time, and "

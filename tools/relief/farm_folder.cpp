@@ -3,6 +3,7 @@
 // Tests: tests/tools/farm_test.cpp.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -61,6 +62,11 @@ std::string array_script(const std::filesystem::path& list) {
         "fi\n"
         "exit $code\n",
         shell_word(list.string()));
+}
+
+/// The file of the numbers of arrays.
+std::filesystem::path arrays_file(const FarmFolder& folder) {
+    return folder.path() / "slurm" / "arrays.txt";
 }
 
 }  // namespace
@@ -176,6 +182,7 @@ void run_parallel(const FarmFolder& folder, const FarmLimits& limits) {
 
 std::vector<std::string> submit_slurm(const FarmFolder& folder, const FarmLimits& limits) {
     std::vector<std::string> arrays;
+    std::ofstream submitted(arrays_file(folder));
     std::string shards;  // Their numbers, as a dependency.
     for (const bool merges : {false, true}) {
         const std::vector<std::size_t> open = folder.open_tasks(merges);
@@ -215,20 +222,39 @@ std::vector<std::string> submit_slurm(const FarmFolder& folder, const FarmLimits
             }
             std::string number = output.text.substr(0, output.text.find_first_of(";\n"));
             if (!merges) shards += ":" + number;
+            submitted << number << std::endl;
             arrays.push_back(std::move(number));
         }
     }
     return arrays;
 }
 
-bool is_queued(const std::vector<std::string>& arrays) {
-    if (arrays.empty()) return false;
-    // The controller may be restarting.
-    if (run_program({"squeue", "--noheader", "--me"}).exit_code != 0) return true;
-    const ProgramOutput active = run_program(
-        {"squeue", "--noheader", "--format=%F", fmt::format("--jobs={}", fmt::join(arrays, ","))});
-    // Slurm forgets arrays that have ended some minutes ago.
-    return active.exit_code == 0 && !active.text.empty();
+std::vector<std::string> submitted_arrays(const FarmFolder& folder) {
+    std::vector<std::string> arrays;
+    std::ifstream stream(arrays_file(folder));
+    for (std::string number; stream >> number;) {
+        if (std::ranges::all_of(number, [](char digit) { return digit >= '0' && digit <= '9'; }))
+            arrays.push_back(number);
+    }
+    return arrays;
+}
+
+QueueState look_into_queue(const std::vector<std::string>& arrays) {
+    constexpr double limit = 60.0;  // squeue itself tries again for some seconds.
+    if (arrays.empty()) return {};
+    const ProgramOutput queue =
+        run_program({"squeue", "--noheader", "--me", "--format=%F"}, CapturedStream::output, limit);
+    if (queue.exit_code == 127) {
+        throw failure("squeue", "cannot be run: " + queue.text, "wait on a machine of the cluster");
+    }
+    if (queue.exit_code == ProgramOutput::timed_out) return {false, false, "squeue does not end"};
+    if (queue.exit_code != 0)
+        return {false, false, fmt::format("squeue ended with {}", queue.exit_code)};
+    std::istringstream lines(queue.text);
+    for (std::string number; lines >> number;) {
+        if (std::ranges::find(arrays, number) != arrays.end()) return {true, true, ""};
+    }
+    return {};
 }
 
 }  // namespace relief::tools
