@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -20,6 +21,9 @@
 #include <vector>
 
 #include "accuracy_report.h"
+#include "check_part.h"
+#include "common/content_hash.h"
+#include "part_file.h"
 #include "relief/mesh/bake.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/diagnose.h"
@@ -421,6 +425,96 @@ void baking(Bytes bytes) {
     bake_normals(all, low, options, [](const BakedRows&) {});
 }
 
+// Parts of shards. Their hashes find damage, so that changed bytes are read only with new hashes.
+
+/// Returns 8 bytes of a number.
+std::string bytes_of(std::uint64_t number) {
+    std::string bytes;
+    for (int i = 0; i < 8; ++i)
+        bytes.push_back(static_cast<char>(number >> (8 * i) & 0xFF));
+    return bytes;
+}
+
+std::uint64_t number_at(std::string_view bytes, std::size_t offset) {
+    std::uint64_t number = 0;
+    for (std::size_t i = 8; i-- > 0;)
+        number = number << 8 | static_cast<unsigned char>(bytes[offset + i]);
+    return number;
+}
+
+std::uint64_t hash_of(std::string_view bytes) {
+    tools::ContentHash hash;
+    hash.add(bytes);
+    return hash.value();
+}
+
+/// Returns the part of a bake with the hashes and lengths of what it holds.
+std::string with_bake_hashes(std::string part) {
+    constexpr std::string_view magic = "relief part 1\n";
+    constexpr std::size_t trailer = 32;
+    if (part.size() < magic.size() + trailer) return part;
+    part.replace(0, magic.size(), magic);
+    const std::size_t end = part.size() - trailer;
+    const std::size_t json = std::min(part.find("{\"tool\"", magic.size()), end);
+    for (std::size_t at = magic.size(); at + 16 <= json;) {
+        const std::size_t size = std::min<std::size_t>(number_at(part, at), json - at - 16);
+        part.replace(at + 8, 8, bytes_of(hash_of(std::string_view(part).substr(at + 16, size))));
+        at += 16 + size;
+    }
+    part.resize(end);
+    return part + bytes_of(json) + bytes_of(end - json) +
+           bytes_of(hash_of(std::string_view(part).substr(json))) + "end part";
+}
+
+/// Reads all rows of the part of a bake.
+void read_bake_part(const std::filesystem::path& file) {
+    const tools::PartFile part(file);
+    for (const tools::PartRows& rows : part.part().rows) {
+        constexpr int max_width = 64;
+        std::uint64_t offset = rows.offset;
+        for (int first = rows.found.rows.first; first < rows.found.rows.last;
+             first += tools::part_chunk_rows) {
+            const int count = std::min(tools::part_chunk_rows, rows.found.rows.last - first);
+            std::vector<TexelState> states(static_cast<std::size_t>(count * max_width));
+            std::vector<float> normals(3 * states.size());
+            BakedRows chunk;
+            chunk.first_row = first;
+            chunk.row_count = count;
+            chunk.states = states;
+            chunk.normals = normals;
+            part.read(chunk, offset, part.part().facts.ids.size());
+        }
+    }
+}
+
+void part(Bytes bytes) {
+    for (const std::string& text :
+         {std::string(text_of(bytes)), with_bake_hashes(std::string(text_of(bytes)))}) {
+        try {
+            read_bake_part(written("input.part", text));
+        } catch (const Error&) {
+        }
+    }
+}
+
+void checkpart(Bytes bytes) {
+    const std::string_view text = text_of(bytes);
+    const std::string json(text.substr(std::min(text.find('\n'), text.size() - 1) + 1));
+    const std::string hashed = fmt::format("relief check part 1 {:016x}\n{}", hash_of(json), json);
+    for (const std::string_view part : {text, std::string_view(hashed)}) {
+        try {
+            const std::vector parts = {tools::read_check_part(written("input.part", part))};
+            const tools::CheckSource source = tools::merged_source(parts, {"input.part"});
+            for (const tools::CheckInput& input : parts.front().walked.files) {
+                if (input.kind == tools::CheckedKind::model) static_cast<void>(source.model(input));
+            }
+            for (const tools::ImageFacts& facts : parts.front().images)
+                static_cast<void>(tools::judge_image(facts, {}));
+        } catch (const Error&) {
+        }
+    }
+}
+
 constexpr char obj_name[] = "input.obj";
 constexpr char ply_name[] = "input.ply";
 constexpr char stl_name[] = "input.stl";
@@ -450,7 +544,9 @@ constexpr std::array targets = {FuzzTarget{"obj", mesh_file<obj_name>},
                                 FuzzTarget{"bump", bump},
                                 FuzzTarget{"maps", maps},
                                 FuzzTarget{"effects", effects},
-                                FuzzTarget{"bake", baking}};
+                                FuzzTarget{"bake", baking},
+                                FuzzTarget{"part", part},
+                                FuzzTarget{"checkpart", checkpart}};
 
 }  // namespace
 
