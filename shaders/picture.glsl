@@ -50,3 +50,15 @@ uniform sampler2DMS drawn;
 const int sample_count = 4;
 
 vec4 drawn_sample(int i) { return texelFetch(drawn, ivec2(gl_FragCoord.xy), i); }
+
+//@part four_texels implements samples
+// Four samples per pixel, drawn as a picture of twice the width and height: GLSL ES has no textures of
+// several samples.
+
+uniform sampler2D drawn;
+
+const int sample_count = 4;
+
+vec4 drawn_sample(int i) {
+    return texelFetch(drawn, 2 * ivec2(gl_FragCoord.xy) + ivec2(i % 2, i / 2), 0);
+}

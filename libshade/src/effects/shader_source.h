@@ -49,8 +49,10 @@ using ShaderConstants = std::vector<std::pair<std::string_view, int>>;
 
 enum class GlslVersion {
     core_330,
-    es_300,  ///< For OpenGL ES 3.0 and WebGL 2: global variables get their values in main(), and
-             ///< buffer textures are textures of two dimensions.
+    /// For OpenGL ES 3.0 and WebGL 2. Three things differ: numbers and samplers have a stated
+    /// precision; global variables get their values in main(); and buffer textures are textures of
+    /// two dimensions, texel i in column i % width of row i / width. All other code is the same.
+    es_300,
 };
 
 /// Returns the part and everything that it includes, after the version and the constants.
@@ -74,6 +76,12 @@ struct SurfaceProgram {
 SurfaceProgram surface_program(const Features& features,
                                GlslVersion version = GlslVersion::core_330);
 
+/// Returns the program of a pass that shades no surface.
+/// \param file  "skybox", "picture" or "overlay", whose parts `vertex` and `fragment` have the
+/// main()s \throws GpuError if a part is missing (an override folder may hold broken files)
+SurfaceProgram pass_program(std::string_view file, const ShaderSteps& steps,
+                            GlslVersion version = GlslVersion::core_330);
+
 /// The part with the main() of each stage, and the parts that are chosen for its steps.
 struct ChosenSteps {
     std::string_view vertex_main = "surface.vert.glsl";
@@ -89,6 +97,11 @@ ShaderSteps pose_steps(bool morphing, bool skinning);
 /// Returns the steps that code a picture, with the scene's exposure and tone curve if this coding
 /// has them: for passes that draw no surface.
 ShaderSteps output_steps(OutputCoding coding, const Scene& scene);
+
+/// Returns the same steps, and the way to read the drawn samples: for the finishing pass.
+/// \param samples  "picture.glsl#one_sample", "picture.glsl#four_samples" (330 core alone) or
+///                 "picture.glsl#four_texels" (from a picture of twice the width and height)
+ShaderSteps finishing_steps(OutputCoding coding, const Scene& scene, std::string_view samples);
 
 /// Returns the same steps, and the rotation of the environment if the scene has one.
 ShaderSteps skybox_steps(OutputCoding coding, const Scene& scene);

@@ -130,6 +130,12 @@ SurfaceProgram detail::surface_program(const Features& features, GlslVersion ver
     return program;
 }
 
+SurfaceProgram detail::pass_program(std::string_view file, const ShaderSteps& steps,
+                                    GlslVersion version) {
+    return {assemble(fmt::format("{}.glsl#vertex", file), steps, {}, version),
+            assemble(fmt::format("{}.glsl#fragment", file), steps, {}, version)};
+}
+
 PlannedInterface planned_interface(const Features& features) {
     const ChosenSteps chosen = chosen_steps(features);
     PlannedInterface planned;

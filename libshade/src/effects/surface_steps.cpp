@@ -460,6 +460,12 @@ ShaderSteps output_steps(OutputCoding coding, const Scene& scene) {
     return steps;
 }
 
+ShaderSteps finishing_steps(OutputCoding coding, const Scene& scene, std::string_view samples) {
+    ShaderSteps steps = output_steps(coding, scene);
+    choose_part(steps, samples);
+    return steps;
+}
+
 ShaderSteps skybox_steps(OutputCoding coding, const Scene& scene) {
     ShaderSteps steps = output_steps(coding, scene);
     const bool rotates = scene.environment && scene.environment->rotation != 0.0F;

@@ -28,12 +28,6 @@ glm::vec4 shown_background(const glm::vec4& background, OutputCoding output) {
     return {glm::min(glm::vec3(background), glm::vec3(1.0F)), background.a};
 }
 
-ShaderSteps finishing_steps(const Scene& scene, OutputCoding output, int samples) {
-    ShaderSteps steps = output_steps(output, scene);
-    choose_part(steps, samples > 1 ? "picture.glsl#four_samples" : "picture.glsl#one_sample");
-    return steps;
-}
-
 }  // namespace
 
 OutputCoding drawn_coding(const FrameSettings& settings, bool finishes) {
@@ -59,7 +53,9 @@ Picture::Picture(const gl::Api& api, TargetPool& targets, ProgramCache& programs
     }
     if (!finishes) return;
     finished_ = targets.take(settings.width, settings.height, format_of(output_), 1);
-    finishing_ = programs.get("picture", finishing_steps(scene, output_, settings.samples));
+    const char* const samples =
+        settings.samples > 1 ? "picture.glsl#four_samples" : "picture.glsl#one_sample";
+    finishing_ = programs.get("picture", finishing_steps(output_, scene, samples));
 }
 
 void Picture::begin() const {

@@ -106,9 +106,9 @@ std::shared_ptr<const gl::LinkedProgram> ProgramCache::get(const std::string& na
                                                            const ShaderSteps& steps) {
     const auto known = others_.find({name, steps});
     if (known != others_.end()) return known->second;
+    const SurfaceProgram source = pass_program(name, steps);
     auto program = std::make_shared<const gl::LinkedProgram>(
-        link(*api_, name, assemble(name + ".glsl#vertex", steps, {}),
-             assemble(name + ".glsl#fragment", steps, {})));
+        link(*api_, name, source.vertex, source.fragment));
     others_.emplace(std::pair(name, steps), program);
     return program;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every part of the shaders compiles: as GLSL 330 core in OpenGL and in glslangValidator, and as
-// GLSL ES 300 in glslangValidator.
+// GLSL ES 3.00 in glslangValidator, which also links random programs of that version.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -91,8 +92,8 @@ class Samples {
     }
 
     void add_pass(const std::string& name, const ShaderSteps& steps) {
-        programs_.push_back({name, assemble(name + ".glsl#vertex", steps, {}, version_),
-                             assemble(name + ".glsl#fragment", steps, {}, version_)});
+        const SurfaceProgram program = pass_program(name, steps, version_);
+        programs_.push_back({name, program.vertex, program.fragment});
         covered_.add(programs_.back().vertex);
         covered_.add(programs_.back().fragment);
     }
@@ -104,14 +105,13 @@ class Samples {
             choose_part(steps, sky);
             add_pass("skybox", steps);
         }
-        for (const char* samples : {"picture.glsl#one_sample", "picture.glsl#four_samples"}) {
+        for (const char* samples :
+             {"picture.glsl#one_sample", "picture.glsl#four_samples", "picture.glsl#four_texels"}) {
             // GLSL ES 3.00 has no textures of several samples.
             if (version_ == GlslVersion::es_300 &&
                 samples == std::string_view("picture.glsl#four_samples"))
                 continue;
-            ShaderSteps steps = output_steps(OutputCoding::linear, scene);
-            choose_part(steps, samples);
-            add_pass("picture", steps);
+            add_pass("picture", finishing_steps(OutputCoding::linear, scene, samples));
         }
         ShaderSteps lines = pose_steps(true, true);
         choose_part(lines, "overlay.glsl#one_color");
@@ -146,6 +146,58 @@ TEST(ShaderLanguage, HasAProgramWithEveryPart) {
         testing::UnorderedElementsAre("picture.glsl#four_samples", "version.glsl#<buffers>"));
 }
 
+bool has_glslang() {
+    return std::system("glslangValidator --version > /dev/null 2>&1") == 0;
+}
+
+/// WebGL 2 guarantees so many textures in a stage.
+constexpr std::ptrdiff_t max_webgl_samplers = 16;
+
+std::ptrdiff_t sampler_count(const ShaderSource& source) {
+    const std::regex declaration("(^|\n)uniform sampler");
+    return std::distance(std::sregex_iterator(source.text.begin(), source.text.end(), declaration),
+                         std::sregex_iterator());
+}
+
+/// Every fifth set is a view of a term or of data; the others are pictures.
+std::vector<Features> random_canonical_sets(std::size_t count) {
+    std::vector<Features> sets;
+    std::set<Features> known;
+    test::for_random_features(10 * count, [&](const Features& random) {
+        Features f = random;
+        const std::size_t at = known.size();
+        const auto views = static_cast<std::size_t>(DebugView::nothing_to_show) + 1;
+        if (at % 5 == 0) f.view = static_cast<DebugView>(at / 5 % views);
+        f = canonical(f);
+        if (sets.size() < count && known.insert(f).second) sets.push_back(f);
+    });
+    return sets;
+}
+
+// Compiling alone finds no stage that reads what the other does not write.
+TEST_LABELS(not_sanitized);
+TEST(ShaderLanguage, LinksRandomProgramsAsGlslEs) {
+    if (!has_glslang()) GTEST_SKIP() << "needs glslangValidator (Debian: glslang-tools)";
+    const std::vector<Features> sets = random_canonical_sets(300);
+    ASSERT_EQ(sets.size(), 300U);
+    const test::TemporaryDirectory folder;
+    for (std::size_t i = 0; i < sets.size(); ++i) {
+        const SurfaceProgram program = surface_program(sets[i], GlslVersion::es_300);
+        EXPECT_LE(sampler_count(program.vertex), max_webgl_samplers) << describe(sets[i]);
+        EXPECT_LE(sampler_count(program.fragment), max_webgl_samplers) << describe(sets[i]);
+        std::ofstream(folder / (std::to_string(i) + ".vert")) << program.vertex.text;
+        std::ofstream(folder / (std::to_string(i) + ".frag")) << program.fragment.text;
+    }
+    // glslangValidator links all of its files to one program.
+    const int status = std::system(
+        ("cd '" + folder.path().string() +
+         "' && for f in *.frag; do glslangValidator -l ${f%.frag}.vert $f || r=1; done > log 2>&1;"
+         " exit ${r-0}")
+            .c_str());
+    std::ifstream log(folder / "log");
+    EXPECT_EQ(status, 0) << std::string{std::istreambuf_iterator<char>(log), {}};
+}
+
 class Validated : public testing::TestWithParam<GlslVersion> {};
 INSTANTIATE_TEST_SUITE_P(As, Validated, testing::Values(GlslVersion::core_330, GlslVersion::es_300),
                          [](const auto& version) {
@@ -154,8 +206,7 @@ INSTANTIATE_TEST_SUITE_P(As, Validated, testing::Values(GlslVersion::core_330, G
 
 TEST_LABELS(not_sanitized);
 TEST_P(Validated, ByGlslang) {
-    if (std::system("glslangValidator --version > /dev/null 2>&1") != 0)
-        GTEST_SKIP() << "needs glslangValidator (Debian: glslang-tools)";
+    if (!has_glslang()) GTEST_SKIP() << "needs glslangValidator (Debian: glslang-tools)";
     const test::TemporaryDirectory folder;
     const Samples samples(GetParam());
     std::string command = "cd '" + folder.path().string() + "' && glslangValidator";
