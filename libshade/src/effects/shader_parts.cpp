@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "relief/shade/renderer.h"
+#include "relief/shade/shader_texts.h"
 
 namespace relief::shade::detail {
 
@@ -148,6 +149,13 @@ const ShaderPart* find_in(const std::unordered_map<std::string_view, const Shade
 
 }  // namespace
 
+std::string marker_line(const ShaderPart& part) {
+    if (part.is_neutral) return fmt::format("{}{}", neutral_marker, part.step);
+    const std::string_view name = std::string_view(part.address).substr(part.file.size() + 1);
+    return part.step.empty() ? fmt::format("{}{}", part_marker, name)
+                             : fmt::format("{}{} implements {}", part_marker, name, part.step);
+}
+
 std::optional<ShaderInclude> include_of(std::string_view line) {
     if (!line.starts_with(include_marker)) return std::nullopt;
     line.remove_prefix(include_marker.size());
@@ -199,3 +207,32 @@ const ShaderPart* find_neutral_code(std::string_view step) {
 }
 
 }  // namespace relief::shade::detail
+
+namespace relief::shade {
+using namespace relief::shade::detail;
+
+std::string with_shader_part(std::string_view file, std::string_view address,
+                             std::string_view part) {
+    const std::string_view name = file_of(address);
+    if (name == address) return std::string(part);
+    const std::vector<std::string_view> lines = lines_of(file);
+    std::size_t first = lines.size();  // The lines from here to `last` are replaced.
+    std::size_t last = lines.size();
+    for (const ShaderPart& old : parts_of(name, file)) {
+        const auto begin = static_cast<std::size_t>(old.first_line) - 2;
+        if (old.address == address) first = begin;
+        if (old.address != address && first < begin && last == lines.size()) last = begin;
+    }
+    std::string result;
+    for (std::size_t i = 0; i < first; ++i)
+        result.append(lines[i]) += '\n';
+    if (!result.empty() && !result.ends_with("\n\n")) result += '\n';
+    result += part;
+    if (!result.ends_with('\n')) result += '\n';
+    if (last < lines.size()) result += '\n';
+    for (std::size_t i = last; i < lines.size(); ++i)
+        result.append(lines[i]) += '\n';
+    return result;
+}
+
+}  // namespace relief::shade

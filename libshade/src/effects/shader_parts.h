@@ -58,6 +58,9 @@ struct ShaderPart {
 ///         unknown, or two parts have one name
 std::vector<ShaderPart> parts_of(std::string_view file, std::string_view text);
 
+/// Returns the line that begins a part or neutral code: "//@part point implements point_lights".
+std::string marker_line(const ShaderPart& part);
+
 /// Returns the include in a line of a part; none if it has none.
 std::optional<ShaderInclude> include_of(std::string_view line);
 

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <list>
 #include <optional>
 #include <set>
 #include <system_error>
@@ -77,23 +78,28 @@ std::optional<GlobalValue> global_value_of(std::string_view line) {
 /// The files of one shader: those of $RELIEF_SHADER_DIR are read once each.
 class ShaderFiles {
   public:
+    explicit ShaderFiles(const ShaderTexts& texts) : texts_(texts) {}
+
     /// Returns a part or neutral code.
     /// \throws GpuError if there is no such file or part, or a file is malformed
     const ShaderPart& part(std::string_view address) {
         const std::string_view file = file_of(address);
-        const Override& override_file = override_of(file);
-        for (const ShaderPart& part : override_file.parts) {
-            if (part.address == address) return part;
-            if (part.address == file)
-                throw GpuError(fmt::format("shader {}: no line begins with //@part", file));
-            if (address == file)
-                throw GpuError(fmt::format("shader {}: a file of one part has no //@part", file));
+        const std::list<Override>& overrides = overrides_of(file);
+        for (const Override& override_file : overrides) {
+            for (const ShaderPart& part : override_file.parts) {
+                if (part.address == address) return part;
+                if (part.address == file)
+                    throw GpuError(fmt::format("shader {}: no line begins with //@part", file));
+                if (address == file)
+                    throw GpuError(
+                        fmt::format("shader {}: a file of one part has no //@part", file));
+            }
         }
         if (const ShaderPart* const part = find_embedded_part(address)) return *part;
         const auto& all = embedded_shaders();
         const bool is_known = std::any_of(
             all.begin(), all.end(), [&](const EmbeddedShader& each) { return each.name == file; });
-        if (!is_known && !override_file.text)
+        if (!is_known && overrides.empty())
             throw GpuError(fmt::format("there is no shader file '{}'", file));
         throw GpuError(fmt::format("there is no part '{}' in shader file '{}'",
                                    address.substr(std::min(file.size() + 1, address.size())),
@@ -102,32 +108,39 @@ class ShaderFiles {
 
   private:
     struct Override {
-        std::optional<std::string> text;
+        std::string text;
         std::vector<ShaderPart> parts;
     };
 
-    const Override& override_of(std::string_view name) {
+    /// Returns the files of a name that replace the embedded one, the first one first.
+    const std::list<Override>& overrides_of(std::string_view name) {
         const auto [entry, is_new] = overrides_.try_emplace(std::string(name));
-        const char* const folder = std::getenv("RELIEF_SHADER_DIR");
-        if (is_new && folder != nullptr) {
+        if (!is_new) return entry->second;
+        if (const auto given = texts_.files.find(entry->first); given != texts_.files.end())
+            entry->second.push_back({given->second, {}});
+        const char* const folder = texts_.uses_folder ? std::getenv("RELIEF_SHADER_DIR") : nullptr;
+        if (folder != nullptr) {
             const std::filesystem::path path = std::filesystem::path(folder) / name;
             note_file(path);
             std::ifstream file(path, std::ios::binary);
-            if (!file) return entry->second;
-            entry->second.text.emplace(std::istreambuf_iterator<char>(file),
-                                       std::istreambuf_iterator<char>());
-            entry->second.parts = parts_of(entry->first, *entry->second.text);
+            if (file)
+                entry->second.push_back(
+                    {{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}, {}});
         }
+        for (Override& each : entry->second)
+            each.parts = parts_of(entry->first, each.text);
         return entry->second;
     }
 
-    std::map<std::string, Override> overrides_;
+    const ShaderTexts& texts_;
+    std::map<std::string, std::list<Override>> overrides_;
 };
 
 /// Assembles one shader.
 class Assembler {
   public:
-    Assembler(const ShaderSteps& steps, GlslVersion version) : steps_(steps), version_(version) {}
+    Assembler(const ShaderSteps& steps, GlslVersion version, const ShaderTexts& texts)
+        : steps_(steps), version_(version), files_(texts) {}
 
     void add_line(std::string_view text, SourceLine origin) {
         source_.text += text;
@@ -230,11 +243,12 @@ class Assembler {
 }  // namespace
 
 ShaderSource assemble(std::string_view part, const ShaderSteps& steps,
-                      const ShaderConstants& constants, GlslVersion version) {
+                      const ShaderConstants& constants, GlslVersion version,
+                      const ShaderTexts& texts) {
     const bool is_es = version == GlslVersion::es_300;
     ShaderSteps all_steps = steps;
     if (is_es) choose_part(all_steps, "version.glsl#es_buffers");
-    Assembler assembler(all_steps, version);
+    Assembler assembler(all_steps, version, texts);
     assembler.add_line(is_es ? "#version 300 es" : "#version 330 core", {});
     if (is_es) assembler.add_part("version.glsl#es_precision", "");
     for (const auto& [name, value] : constants) {
@@ -269,3 +283,24 @@ std::string with_file_names(const std::string& message, const ShaderSource& sour
 }
 
 }  // namespace relief::shade::detail
+
+namespace relief::shade {
+using namespace relief::shade::detail;
+
+ShaderPartText shader_part_text(std::string_view address, const ShaderTexts& texts) {
+    ShaderFiles files(texts);
+    const ShaderPart& part = files.part(address);
+    ShaderPartText result;
+    result.file = part.file;
+    result.first_line = part.first_line;
+    result.is_built_in = &part == find_embedded_part(address);
+    if (part.address != part.file) {
+        result.text = marker_line(part) + '\n';
+        --result.first_line;
+    }
+    for (const std::string_view line : part.lines)
+        result.text.append(line) += '\n';
+    return result;
+}
+
+}  // namespace relief::shade

@@ -5,8 +5,8 @@
 ///
 /// A part includes others by address, or by the step that they implement: the caller chooses one
 /// part for each step, and neutral code stands for a step without one. Each part enters a shader
-/// once. The files are embedded at build; a part in a file of the same name in $RELIEF_SHADER_DIR
-/// takes precedence.
+/// once. The files are embedded at build; a part in a file of the same name in ShaderTexts or in
+/// $RELIEF_SHADER_DIR takes precedence.
 ///
 /// One table (surface_steps.cpp) has a row for every part that implements a step, with its
 /// condition. The inputs of a program are those that its parts declare. Pure. Tests:
@@ -21,6 +21,7 @@
 
 #include "effects/shader_parts.h"
 #include "relief/shade/effects.h"
+#include "relief/shade/shader_texts.h"
 
 namespace relief::shade::detail {
 
@@ -59,8 +60,8 @@ enum class GlslVersion {
 /// \throws GpuError naming file and line if an included part or step does not exist or includes
 ///         itself, or if a file is malformed (parts_of())
 ShaderSource assemble(std::string_view part, const ShaderSteps& steps,
-                      const ShaderConstants& constants,
-                      GlslVersion version = GlslVersion::core_330);
+                      const ShaderConstants& constants, GlslVersion version = GlslVersion::core_330,
+                      const ShaderTexts& texts = {});
 
 /// Returns a driver's message about this source with lines named by file: "0:12(3): error" becomes
 /// "normal_map.glsl:7(3): error". Mesa's and NVIDIA's forms are known; others stay as they are.
@@ -74,13 +75,15 @@ struct SurfaceProgram {
 /// \param features  canonical, or a canonical set with more effects on
 /// \throws GpuError if a part is missing (an override folder may hold broken files)
 SurfaceProgram surface_program(const Features& features,
-                               GlslVersion version = GlslVersion::core_330);
+                               GlslVersion version = GlslVersion::core_330,
+                               const ShaderTexts& texts = {});
 
 /// Returns the program of a pass that shades no surface.
 /// \param file  "skybox", "picture" or "overlay", whose parts `vertex` and `fragment` have the
 /// main()s \throws GpuError if a part is missing (an override folder may hold broken files)
 SurfaceProgram pass_program(std::string_view file, const ShaderSteps& steps,
-                            GlslVersion version = GlslVersion::core_330);
+                            GlslVersion version = GlslVersion::core_330,
+                            const ShaderTexts& texts = {});
 
 /// The part with the main() of each stage, and the parts that are chosen for its steps.
 struct ChosenSteps {

@@ -101,8 +101,8 @@ void add_inputs(PlannedInterface& planned, std::string_view main, const ShaderSt
     }
 }
 
-ShaderListing listing_of(const Features& features) {
-    const SurfaceProgram program = surface_program(features);
+ShaderListing listing_of(const Features& features, const ShaderTexts& texts) {
+    const SurfaceProgram program = surface_program(features, GlslVersion::core_330, texts);
     ShaderListing listing;
     listing.features = features;
     listing.vertex = program.vertex.text;
@@ -116,24 +116,25 @@ ShaderListing listing_of(const Features& features) {
 
 }  // namespace
 
-SurfaceProgram detail::surface_program(const Features& features, GlslVersion version) {
+SurfaceProgram detail::surface_program(const Features& features, GlslVersion version,
+                                       const ShaderTexts& texts) {
     const ChosenSteps chosen = chosen_steps(features);
     const ShaderConstants constants =
         light_count(features) > 0 ? light_constants(features) : ShaderConstants{};
     // The stage that computes the lights.
     const bool at_vertices = features.interpolation == Interpolation::gouraud;
     SurfaceProgram program{assemble(chosen.vertex_main, chosen.vertex,
-                                    at_vertices ? constants : ShaderConstants{}, version),
+                                    at_vertices ? constants : ShaderConstants{}, version, texts),
                            assemble(chosen.fragment_main, chosen.fragment,
-                                    at_vertices ? ShaderConstants{} : constants, version)};
+                                    at_vertices ? ShaderConstants{} : constants, version, texts)};
     program.fragment.text = at_second_texcoords(std::move(program.fragment.text), features);
     return program;
 }
 
 SurfaceProgram detail::pass_program(std::string_view file, const ShaderSteps& steps,
-                                    GlslVersion version) {
-    return {assemble(fmt::format("{}.glsl#vertex", file), steps, {}, version),
-            assemble(fmt::format("{}.glsl#fragment", file), steps, {}, version)};
+                                    GlslVersion version, const ShaderTexts& texts) {
+    return {assemble(fmt::format("{}.glsl#vertex", file), steps, {}, version, texts),
+            assemble(fmt::format("{}.glsl#fragment", file), steps, {}, version, texts)};
 }
 
 PlannedInterface planned_interface(const Features& features) {
@@ -148,13 +149,13 @@ PlannedInterface planned_interface(const Features& features) {
     return planned;
 }
 
-std::vector<ShaderListing> shader_listings(const FramePlan& plan) {
+std::vector<ShaderListing> shader_listings(const FramePlan& plan, const ShaderTexts& texts) {
     std::vector<ShaderListing> listings;
     std::map<Features, std::size_t> known;
     for (std::size_t i = 0; i < plan.draws.size(); ++i) {
         const Features& features = plan.draws[i].features;
         const auto [entry, is_new] = known.emplace(features, listings.size());
-        if (is_new) listings.push_back(listing_of(features));
+        if (is_new) listings.push_back(listing_of(features, texts));
         listings[entry->second].draws.push_back(i);
     }
     return listings;

@@ -91,7 +91,7 @@ std::shared_ptr<const DrawProgram> ProgramCache::get(const Features& features) {
         const Stopwatch stopwatch;
         PlannedInterface planned = planned_interface(features);
         check_texture_units(planned, api_->limits().texture_units);
-        const SurfaceProgram source = surface_program(features);
+        const SurfaceProgram source = surface_program(features, GlslVersion::core_330, *texts_);
         entry = std::make_shared<const DrawProgram>(
             DrawProgram{link(*api_, fmt::format("surface ({})", describe(features)), source.vertex,
                              source.fragment),
@@ -106,7 +106,7 @@ std::shared_ptr<const gl::LinkedProgram> ProgramCache::get(const std::string& na
                                                            const ShaderSteps& steps) {
     const auto known = others_.find({name, steps});
     if (known != others_.end()) return known->second;
-    const SurfaceProgram source = pass_program(name, steps);
+    const SurfaceProgram source = pass_program(name, steps, GlslVersion::core_330, *texts_);
     auto program = std::make_shared<const gl::LinkedProgram>(
         link(*api_, name, source.vertex, source.fragment));
     others_.emplace(std::pair(name, steps), program);
@@ -116,6 +116,29 @@ std::shared_ptr<const gl::LinkedProgram> ProgramCache::get(const std::string& na
 void ProgramCache::clear() {
     programs_.clear();
     others_.clear();
+}
+
+const ShaderTexts& ProgramCache::no_texts() {
+    static const ShaderTexts none;
+    return none;
+}
+
+ProgramCache& ProgramCaches::with(const std::shared_ptr<const ShaderTexts>& texts) {
+    std::erase_if(edited_, [](const auto& entry) { return entry.first.expired(); });
+    return texts ? edited_.try_emplace(texts, *api_, *texts).first->second : plain_;
+}
+
+void ProgramCaches::clear() {
+    plain_.clear();
+    for (auto& [texts, programs] : edited_)
+        programs.clear();
+}
+
+std::size_t ProgramCaches::size() const {
+    std::size_t size = plain_.size();
+    for (const auto& [texts, programs] : edited_)
+        size += programs.size();
+    return size;
 }
 
 }  // namespace relief::shade::detail

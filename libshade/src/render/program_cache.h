@@ -14,6 +14,7 @@
 #include "effects/shader_source.h"
 #include "gl/program.h"
 #include "relief/shade/effects.h"
+#include "relief/shade/shader_texts.h"
 
 namespace relief::shade::detail {
 
@@ -70,7 +71,9 @@ void check_texture_units(const PlannedInterface& planned, int available);
 
 class ProgramCache {
   public:
-    explicit ProgramCache(const gl::Api& api) : api_(&api) {}
+    /// \param texts  replace parts of the shaders, and outlive all calls of get()
+    explicit ProgramCache(const gl::Api& api, const ShaderTexts& texts = no_texts())
+        : api_(&api), texts_(&texts) {}
 
     /// Returns the program for canonical features, linked on first use.
     /// \throws GpuError if it does not link, or samples more textures than the driver allows
@@ -89,10 +92,32 @@ class ProgramCache {
     [[nodiscard]] double milliseconds() const { return milliseconds_; }
 
   private:
+    static const ShaderTexts& no_texts();
+
     const gl::Api* api_;
+    const ShaderTexts* texts_;
     std::map<Features, std::shared_ptr<const DrawProgram>> programs_;
     std::map<std::pair<std::string, ShaderSteps>, std::shared_ptr<const gl::LinkedProgram>> others_;
     double milliseconds_ = 0;
+};
+
+/// The programs of one context by the texts that replace parts of their shaders.
+class ProgramCaches {
+  public:
+    explicit ProgramCaches(const gl::Api& api) : api_(&api), plain_(api) {}
+
+    /// Returns the programs of these texts, which the caller keeps alive; null: those of the files.
+    /// Programs of texts that nobody keeps are removed.
+    ProgramCache& with(const std::shared_ptr<const ShaderTexts>& texts);
+
+    void clear();
+
+    [[nodiscard]] std::size_t size() const;
+
+  private:
+    const gl::Api* api_;
+    ProgramCache plain_;
+    std::map<std::weak_ptr<const ShaderTexts>, ProgramCache, std::owner_less<>> edited_;
 };
 
 }  // namespace relief::shade::detail

@@ -48,7 +48,7 @@ struct RenderCache::Implementation {
     explicit Implementation(const gl::Api& api)
         : programs(api), meshes(api), textures(api), environments(api), targets(api) {}
 
-    ProgramCache programs;
+    ProgramCaches programs;
     MeshCache meshes;
     TextureCache textures;
     EnvironmentCache environments;
@@ -256,6 +256,8 @@ struct Renderer::Implementation {
     const gl::Api& api;
     std::unique_ptr<RenderCache> own;  ///< If none was given.
     RenderCache::Implementation& cache;
+    std::shared_ptr<const ShaderTexts> shaders;  ///< Kept for the programs.
+    ProgramCache& linked;
     FramePlan plan;
     std::array<std::size_t, 4> counts;
     FrameTimes times;
@@ -288,9 +290,11 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
     : api(context.api()),
       own(given == nullptr ? std::make_unique<RenderCache>(context) : nullptr),
       cache((given == nullptr ? *own : *given).implementation()),
+      shaders(settings.shaders),
+      linked(cache.programs.with(shaders)),
       plan(std::move(frame_plan)),
       counts(object_counts(scene)),
-      picture(api, cache.targets, cache.programs, scene, settings, plan.finishing_pass),
+      picture(api, cache.targets, linked, scene, settings, plan.finishing_pass),
       textures(cache.textures),
       counts_fragments(settings.view == DebugView::overdraw) {
     report_missing_texcoords(scene, plan, report);
@@ -303,13 +307,13 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
     if (shows_environment) cache.environments.decode(*scene.environment);
     times.decode_images = 1e3 * stopwatch.lap();
 
-    const double linked_before = cache.programs.milliseconds();
+    const double linked_before = linked.milliseconds();
     prepare_meshes(scene, report);
     textures.upload(scene.images);
     report_judged_kinds(textures, scene, plan, report);
     environment.emplace(api, cache.environments, scene, plan, shows_environment, report);
     if (plan.skybox) {
-        skybox.emplace(api, cache.programs, scene, drawn_coding(settings, plan.finishing_pass),
+        skybox.emplace(api, linked, scene, drawn_coding(settings, plan.finishing_pass),
                        environment->blurred_levels());
     }
     {
@@ -318,12 +322,11 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
         prepare_draws(scene);
     }
     if (settings.overlays.any()) {
-        overlays =
-            std::make_unique<OverlayDrawing>(api, cache.programs, scene, plan, settings, report);
+        overlays = std::make_unique<OverlayDrawing>(api, linked, scene, plan, settings, report);
     }
     api->Finish();
     api.check("preparing the scene");
-    times.link = cache.programs.milliseconds() - linked_before;
+    times.link = linked.milliseconds() - linked_before;
     times.prepare = 1e3 * stopwatch.lap();
 }
 
@@ -428,7 +431,7 @@ Draw Renderer::Implementation::prepare_draw(const Scene& scene, std::size_t plan
     const Planned p = planned(scene, plan_of_draw);
     const Instance& instance = scene.instances[plan_of_draw.instance];
     Draw draw;
-    draw.program = cache.programs.get(p.features);
+    draw.program = linked.get(p.features);
     programs.insert(p.features);
     draw.features = p.features;
     draw.planned = planned_draw;
@@ -456,7 +459,7 @@ void Renderer::Implementation::follow_poses(const Scene& scene) {
         const Features& features = plan.draws[draw.planned].features;
         const bool was_deformed = is_deformed(draw.features);
         if (draw.features != features) {
-            draw.program = cache.programs.get(features);
+            draw.program = linked.get(features);
             programs.insert(features);
             draw.features = features;
         }
@@ -683,7 +686,7 @@ void Renderer::Implementation::draw_shadow_maps() {
         if (!draw.surface->casts_shadow) continue;
         Features depth_only = draw.features;
         depth_only.view = DebugView::overdraw;
-        casting.emplace_back(&draw, cache.programs.get(canonical(depth_only)));
+        casting.emplace_back(&draw, linked.get(canonical(depth_only)));
     }
     api->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     api->Disable(GL_CULL_FACE);

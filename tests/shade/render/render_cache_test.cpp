@@ -100,6 +100,41 @@ TEST_P(RendererPrograms, NameTheFileAndLineOfAnError) {
     }
 }
 
+TEST_P(RendererPrograms, AreThoseOfTheirTexts) {
+    const auto red = std::make_shared<const ShaderTexts>(
+        ShaderTexts{{{"output.glsl",
+                      "//@part linear implements output\nvec3 coded(vec3 radiance) { return "
+                      "vec3(1, 0, 0); }\n"}},
+                    true});
+    ProgramCaches caches(api());
+    Features f;
+    f.output = OutputCoding::linear;
+    const auto plain = caches.with(nullptr).get(f);
+    const auto edited = caches.with(red).get(f);
+    EXPECT_NE(plain, edited);
+    EXPECT_EQ(caches.with(red).get(f), edited);
+    EXPECT_EQ(caches.with(nullptr).get(f), plain);
+    EXPECT_EQ(caches.size(), 2U);
+    const auto broken = std::make_shared<const ShaderTexts>(
+        ShaderTexts{{{"output.glsl", "//@part linear implements output\n?\n"}}, true});
+    try {
+        (void)caches.with(broken).get(f);
+        FAIL() << "a broken text was accepted";
+    } catch (const GpuError& error) {
+        EXPECT_THAT(error.what(), ::testing::HasSubstr("output.glsl:2"));
+    }
+}
+
+TEST_P(RendererPrograms, LeaveWithTheirTexts) {
+    ProgramCaches caches(api());
+    auto texts = std::make_shared<const ShaderTexts>();
+    (void)caches.with(texts).get(Features{});
+    EXPECT_EQ(caches.size(), 1U);
+    texts.reset();
+    EXPECT_EQ(caches.with(nullptr).size(), 0U);
+    EXPECT_EQ(caches.size(), 0U);
+}
+
 class Cached : public test::DrawTest {
   protected:
     void SetUp() override {

@@ -20,6 +20,7 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/frame_settings.h"
 #include "relief/shade/scene.h"
+#include "relief/shade/shader_texts.h"
 
 namespace RELIEF_API relief {
 namespace shade {
@@ -323,8 +324,9 @@ struct ShaderListing {
 };
 
 /// Returns one entry per program, in the order of the first draw that uses it.
-/// \throws GpuError if a file of $RELIEF_SHADER_DIR includes a missing part
-std::vector<ShaderListing> shader_listings(const FramePlan& plan);
+/// \param texts  replace parts of the shaders
+/// \throws GpuError if a file of `texts` or $RELIEF_SHADER_DIR includes a missing part
+std::vector<ShaderListing> shader_listings(const FramePlan& plan, const ShaderTexts& texts = {});
 
 }  // namespace shade
 }  // namespace relief

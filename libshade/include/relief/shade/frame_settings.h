@@ -18,6 +18,7 @@
 #include "relief/export.h"
 #include "relief/mesh/diagnose.h"
 #include "relief/shade/scene.h"
+#include "relief/shade/shader_texts.h"
 
 namespace RELIEF_API relief {
 namespace shade {
@@ -173,6 +174,8 @@ struct FrameSettings {
     /// `samples`.
     DebugView view = DebugView::picture;
     Overlays overlays = {};
+    /// Texts that replace parts of the shaders; none if it is null. Other texts are another object.
+    std::shared_ptr<const ShaderTexts> shaders = nullptr;
 
     friend bool operator==(const FrameSettings&, const FrameSettings&) = default;
 };
