@@ -13,6 +13,7 @@
 #include "common/text.h"
 #include "effect_options.h"
 #include "environment_options.h"
+#include "exercise.h"
 #include "light_options.h"
 #include "material_options.h"
 #include "option_conflicts.h"
@@ -22,6 +23,7 @@
 #include "portable_math.h"
 #include "saved_files.h"
 #include "scene_options.h"
+#include "step_pictures.h"
 #include "window/window_system.h"
 
 namespace relief::tools {
@@ -143,6 +145,8 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
     add_reference_options(app, options);
     add_compare_options(app, options);
     add_effect_options(app, options);
+    add_step_options(app, options);
+    add_exercise_options(app, options);
     add_debug_options(app, options);
     const Choices<Backend> backends = {
         {"auto", Backend::automatic}, {"osmesa", Backend::osmesa}, {"egl", Backend::egl}};
@@ -154,8 +158,9 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
 
 void check_written_files(const ViewOptions& options, std::vector<std::filesystem::path> others) {
     others.insert(others.end(), options.environment.begin(), options.environment.end());
-    for (const auto& file : {std::optional(options.model), options.compare.file, options.reference,
-                             options.normal_map, options.height_map, options.diffuse_map}) {
+    for (const auto& file :
+         {std::optional(options.model), options.compare.file, options.reference, options.normal_map,
+          options.height_map, options.diffuse_map, options.exercise_file}) {
         if (file && !file->empty()) others.push_back(*file);
     }
     const auto check = [&](const char* option, const std::optional<std::filesystem::path>& file) {
@@ -171,6 +176,7 @@ void check_written_files(const ViewOptions& options, std::vector<std::filesystem
 
 void settle(ViewOptions& options) {
     recover_model(options);
+    settle_exercise(options);
     if (options.model.empty() && !options.wants_window() && !options.list_bindings)
         throw UsageError("MODEL is missing");
     check_conflicts(options);

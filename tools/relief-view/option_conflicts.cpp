@@ -66,6 +66,9 @@ bool has_one_image(const Options& o) {
     return !uses_no_environment(o) && o.environment.size() == 1 &&
            !std::filesystem::is_directory(o.environment.front());
 }
+bool has_forced_effects(const Options& o) {
+    return o.effects.requests.base != EffectBase::planned || !o.effects.requests.forced.empty();
+}
 template <auto Member>
 bool changes_material(const Options& o) {
     return o.material_fields.has(Member);
@@ -134,6 +137,29 @@ const Conflict conflicts[] = {
      "needs --compare or --compare-to", "add one of them, or leave it out"},
     {"--compare", [](const Options& o) { return o.compare.variant && o.compare.file; },
      "contradicts --compare-to", drop_one},
+    // Steps and exercises.
+    {"--steps", [](const Options& o) { return o.steps && !o.output; }, "there is no --output",
+     "add one; the window has a slider for steps"},
+    {"--steps", [](const Options& o) { return o.steps && is_sequence(o); },
+     "applies to one picture, not to a sequence", drop_one},
+    {"--steps", [](const Options& o) { return o.steps && (o.compare.compares() || o.reference); },
+     "draws several pictures, which are not compared with others", drop_one},
+    {"--steps",
+     [](const Options& o) {
+         return o.steps && (o.effects.measures() || has_forced_effects(o) || o.explain_effects ||
+                            o.debug.view != DebugView::picture);
+     },
+     "chooses the effects of its pictures itself",
+     "leave out --effects, --explain-effects, --benchmark, --budget and --show"},
+    {"--exercise", [](const Options& o) { return o.exercise && is_sequence(o); },
+     "applies to one picture, not to a sequence", drop_one},
+    {"--exercise",
+     [](const Options& o) {
+         return o.exercise && (o.compare.compares() || o.reference || o.steps);
+     },
+     "compares with the solution", "leave out --compare, --reference and --steps"},
+    {"--exercise", [](const Options& o) { return o.exercise && !o.output && !o.wants_window(); },
+     "there is no --output", "add one"},
     // The model.
     {"--up", [](const Options& o) { return o.up && is_scene_file(o); },
      "applies to model files, not to scene files", "rotate the nodes of the scene"},

@@ -164,7 +164,7 @@ void add_reference_options(CLI::App& app, ViewOptions& options) {
 
 void check_reference(const ViewOptions& options) {
     if (!options.reference) {
-        const bool has_sides = options.compare.compares() && options.output;
+        const bool has_sides = (options.compare.compares() || options.exercise) && options.output;
         refuse_without_reference(options.max_difference.has_value(), "--max-difference");
         refuse_without_reference(options.difference_map && !has_sides, "--difference-map");
         if (options.difference_map) check_map(options);

@@ -15,6 +15,7 @@
 #include "common/file_jobs.h"
 #include "common/summary.h"
 #include "effect_options.h"
+#include "exercise.h"
 #include "picture_comparison.h"
 #include "picture_sequence.h"
 #include "picture_sink.h"
@@ -25,6 +26,7 @@
 #include "relief/shade/renderer.h"
 #include "saved_files.h"
 #include "scene_options.h"
+#include "step_pictures.h"
 #include "view_options.h"
 #include "window/shortcuts.h"
 
@@ -41,6 +43,7 @@ struct Drawn {
     std::string renderer;
     std::optional<ReferenceComparison> comparison;
     std::optional<PictureComparison> sides;  ///< The result of --compare.
+    std::optional<ExerciseResult> exercise;  ///< The result of --exercise.
     FrameMeasures measures;
 };
 
@@ -140,6 +143,7 @@ Summary summary_of(const ViewOptions& options, const ComposedScene& composed, co
         if (options.output) summary.add("wrote", written(options));
         if (drawn->comparison) add_comparison(summary, options, *drawn->comparison);
         if (drawn->sides) add_sides(summary, options.compare, *drawn->sides);
+        if (drawn->exercise) add_exercise(summary, *options.exercise, *drawn->exercise);
     }
     if (options.debug.health_markers) add_legend(summary, markers);
     if (drawn != nullptr) add_measures(summary, drawn->measures, options, drawn->frame);
@@ -158,7 +162,8 @@ FrameSettings settings_of(const ViewOptions& options, const HealthMarkers& marke
             .samples = options.samples,
             .output = coding_of(options),
             .view = options.debug.view,
-            .overlays = overlays_of(options.debug, markers, grid)};
+            .overlays = overlays_of(options.debug, markers, grid),
+            .shaders = options.exercise ? attempt_at(*options.exercise).texts : nullptr};
 }
 
 /// Keeps alpha only if it was requested, because viewers show different colors behind it.
@@ -222,6 +227,13 @@ Drawn draw(const ViewOptions& options, const FrameSettings& settings, ComposedSc
             picture = split_picture(picture, other, split);
         }
         if (sink) sink->take(picture);
+        if (options.exercise) {
+            drawn.exercise =
+                compare_with_solution(*options.exercise, settings, plan, composed.scene(),
+                                      composed.camera, *context, picture);
+            write_difference_map(options, *drawn.exercise);
+            report_result(*drawn.exercise, report);
+        }
         if (options.reference)
             drawn.comparison = compare_with_reference(options, picture, reference);
     };
@@ -264,7 +276,10 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
                                  chosen_plan(options, composed.scene(), settings), report);
     save_files(options, composed, stages);
     std::optional<Drawn> drawn;
-    if (options.output || options.reference || options.effects.measures()) {
+    std::vector<DrawnStep> steps;
+    if (options.steps) {
+        steps = draw_steps(options, settings, composed, stages, report);
+    } else if (options.output || options.reference || options.effects.measures()) {
         drawn = draw(options, settings, composed, plan, stages, report);
     }
     if (options.explain_effects && !options.json) effect_summary(composed.scene(), plan).print();
@@ -274,12 +289,13 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
     findings.add("", without_assumed(report, options.assumed));
     Summary summary =
         summary_of(options, composed, plan, drawn ? &*drawn : nullptr, markers, findings, stages);
+    if (!steps.empty()) add_steps(summary, options, steps);
     if (options.json) {
         if (options.explain_effects)
             summary.add_part("effects", effect_summary(composed.scene(), plan));
         if (options.effects.print_shaders) summary.add_json({{"shaders", shaders_json(plan)}});
         print_json(summary.json());
-    } else if (drawn && !options.general.quiet) {
+    } else if ((drawn || !steps.empty()) && !options.general.quiet) {
         if (options.explain_effects || options.effects.print_shaders) print_text("\n");
         summary.print();
     }
@@ -298,7 +314,7 @@ Command add_view_command(CLI::App& tool) {
     set_common_options(
         tool, {"--output", "--size", "--explain-effects", "--diffuse-map", "--normal-map",
                "--height-map", "--strength", "--material", "--environment", "--light", "--camera",
-               "--turntable", "--compare", "--show"});
+               "--turntable", "--compare", "--show", "--steps"});
     set_examples(
         tool,
         {"relief-view --list-bindings", "relief-view data/vase.obj --output out/vase.png",
@@ -313,6 +329,8 @@ Command add_view_command(CLI::App& tool) {
          "relief-view data/vase.obj --show shading-normal --wireframe --output out/normals.png",
          "relief-view data/vase.obj --height-map data/bricks-height.png --compare kernel=central3 "
          "--output out/sides.png",
+         "relief-view data/scenes/environment-mapping.json --steps --output out/steps.png --size "
+         "240x160",
          "relief-view data/vase.obj --material gold --light point:2,2,2,4 --save-scene "
          "out/golden.json",
          "relief-view data/vase.obj --diffuse-map data/bricks-diffuse.png --explain-effects"});

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -27,6 +28,8 @@
 #include "relief/shade/scene_variant.h"
 
 namespace relief::tools {
+
+struct Exercise;
 
 /// "none": the scene has no lights.
 struct NoLight {};
@@ -117,6 +120,10 @@ struct ViewOptions {
     FieldChanges<shade::Environment> environment_fields;
     FieldChanges<shade::Scene> scene_fields;
     bool no_fresnel = false;  ///< --fresnel none
+
+    std::optional<std::filesystem::path> exercise_file;
+    std::shared_ptr<const Exercise> exercise;  ///< That of the file; its scene is the model.
+    bool steps = false;
 
     std::optional<std::filesystem::path> reference;
     std::optional<double> max_difference;  ///< From the reference. If absent, it is 0.

@@ -7,6 +7,8 @@
 
 #include "support/gl_environment.h"
 #include "support/shapes.h"
+#include "window/background_jobs.h"
+#include "window/shader_panel.h"
 
 namespace relief::tools {
 using namespace relief::shade;

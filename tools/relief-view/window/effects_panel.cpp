@@ -1,32 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// The effects panel: the reasons for each effect, measured times, and the shader source.
+// The effects panel: the reasons for each effect, measured times, and the shaders.
 #include "window/effects_panel.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
-#include <sstream>
 #include <utility>
 
 #include "common/text.h"
 #include "window/controls.h"
 #include "window/panels.h"
+#include "window/shader_panel.h"
 
 namespace relief::tools {
 using namespace relief::shade;
-
-std::string numbered_lines(const std::string& source) {
-    const bool has_open_end = !source.empty() && source.back() != '\n';
-    const auto count = std::count(source.begin(), source.end(), '\n') + (has_open_end ? 1 : 0);
-    const std::size_t width = fmt::format("{}", count).size();
-    std::istringstream lines(source);
-    std::string text;
-    std::string line;
-    for (int number = 1; std::getline(lines, line); ++number)
-        text += fmt::format("{:>{}}  {}\n", number, width, line);
-    return text;
-}
 
 int forced_choice(const EffectRequest& requests, const std::string& name) {
     for (const ForcedEffect& effect : requests.forced) {
@@ -39,51 +27,6 @@ EffectRequest with_forced_choice(EffectRequest requests, const std::string& name
     std::erase_if(requests.forced, [&](const ForcedEffect& effect) { return effect.name == name; });
     if (choice != 0) requests.forced.push_back({name, choice == 1});
     return requests;
-}
-
-void ShaderPanel::assemble(const FramePlan& plan) {
-    programs_.clear();
-    error_.clear();
-    try {
-        for (ShaderListing& listing : shader_listings(plan)) {
-            Program program{describe(listing.features), std::move(listing), "", ""};
-            program.vertex = numbered_lines(program.listing.vertex);
-            program.fragment = numbered_lines(program.listing.fragment);
-            programs_.push_back(std::move(program));
-        }
-    } catch (const std::exception& error) {  // A file in RELIEF_SHADER_DIR may be incomplete.
-        error_ = error.what();
-    }
-}
-
-void ShaderPanel::draw_stage(const char* name, const std::string& source, std::string& numbered) {
-    if (!ImGui::BeginTabItem(name)) return probe_item(name);
-    probe_item(name);
-    if (ImGui::Button("Copy without numbers")) ImGui::SetClipboardText(source.c_str());
-    probe_item("Copy without numbers");
-    // The field is read-only, so the text does not change.
-    ImGui::InputTextMultiline("##source", numbered.data(), numbered.size() + 1,
-                              {-1.0F, 24.0F * ImGui::GetTextLineHeight()},
-                              ImGuiInputTextFlags_ReadOnly);
-    ImGui::EndTabItem();
-}
-
-void ShaderPanel::draw(const std::shared_ptr<const FramePlan>& plan) {
-    if (plan_ != plan) assemble(*plan);
-    plan_ = plan;
-    if (!error_.empty()) ImGui::TextWrapped("%s", error_.c_str());
-    for (std::size_t i = 0; i < programs_.size(); ++i) {
-        Program& program = programs_[i];
-        const bool is_open = ImGui::TreeNode(fmt::format("{}##{}", program.name, i).c_str());
-        probe_item(fmt::format("Program {}", i + 1));
-        if (!is_open) continue;
-        if (ImGui::BeginTabBar("stages")) {
-            draw_stage("Fragment shader", program.listing.fragment, program.fragment);
-            draw_stage("Vertex shader", program.listing.vertex, program.vertex);
-            ImGui::EndTabBar();
-        }
-        ImGui::TreePop();
-    }
 }
 
 namespace {
@@ -154,7 +97,7 @@ void draw_effects_panel(const PanelInput& input, PanelRequests& requests) {
     const bool is_open = ImGui::TreeNode("Shaders");
     probe_item("Shaders");
     if (is_open) {
-        input.shaders.draw(input.drawn.plan);
+        input.shaders.draw(input);
         ImGui::TreePop();
     }
     if (ImGui::BeginTable("effects", 3, ImGuiTableFlags_SizingFixedFit)) {

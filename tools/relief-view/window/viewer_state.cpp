@@ -445,6 +445,16 @@ void ViewerState::set_effects(EffectRequest effects) {
     ++revision_;
 }
 
+void ViewerState::set_shaders(const std::shared_ptr<const ShaderTexts>& texts,
+                              const PictureStep* step) {
+    const bool is_same_step = step == nullptr ? !step_ : step_ && step_->name == step->name;
+    if (texts == shaders_ && is_same_step) return;
+    shaders_ = texts;
+    step_.reset();
+    if (step != nullptr) step_ = *step;
+    ++revision_;
+}
+
 void ViewerState::choose_camera(std::size_t index) {
     playback_.choose_camera(index);
     move_to(playback_.time());
@@ -609,7 +619,12 @@ std::optional<DrawRequest> ViewerState::request() const {
     request.settings.samples = options_.samples;
     request.settings.view = options_.debug.view;
     request.settings.overlays = overlays_of(options_.debug, markers_, grid_);
+    request.settings.shaders = shaders_;
     request.camera = camera_of(camera_, reach_);
+    if (step_) {
+        request.effects = step_->request;
+        request.scene = std::make_shared<const Scene>(scene_of_step(*shown_, *step_));
+    }
     return request;
 }
 

@@ -15,6 +15,7 @@
 
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
+#include "relief/shade/picture_steps.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_graph.h"
 #include "scene_options.h"
@@ -146,6 +147,11 @@ class ViewerState {
     /// Applies the camera of a command line. If the text contains none, error() reports it.
     void apply_view_text(const std::string& text);
 
+    /// Sets the texts that replace parts of the shaders, and the step that the picture shows.
+    /// \param step  null: the whole picture
+    void set_shaders(const std::shared_ptr<const shade::ShaderTexts>& texts,
+                     const shade::PictureStep* step);
+
     void set_effects(shade::EffectRequest effects);
     [[nodiscard]] const shade::EffectRequest& effects() const { return effects_; }
 
@@ -275,6 +281,8 @@ class ViewerState {
     shade::HealthMarkers markers_;  ///< The result of the search for mesh problems.
     bool has_health_request_ = false;
     shade::EffectRequest effects_;
+    std::shared_ptr<const shade::ShaderTexts> shaders_;
+    std::optional<shade::PictureStep> step_;  ///< None: the whole picture.
     OrbitCamera camera_;
     Bounds bounds_;  ///< Of the scene as it was read.
     BoundingSphere sphere_;

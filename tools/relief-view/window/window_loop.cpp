@@ -28,10 +28,10 @@
 #include "window/capture.h"
 #include "window/comparison.h"
 #include "window/controls.h"
-#include "window/effects_panel.h"
 #include "window/input_files.h"
 #include "window/panels.h"
 #include "window/scene_accuracy.h"
+#include "window/shader_panel.h"
 #include "window/user_interface.h"
 #include "window/window_system.h"
 
@@ -91,6 +91,7 @@ class WindowLoop {
             accuracy_.follow(state_);
             comparison_.follow(state_);
             saving_.follow();
+            follow_shaders();
             // Tables find their column widths after the first frame with the results.
             if (was_working && !is_working()) pending_frames_ = frames_to_settle;
             if (system_.is_visible()) draw();
@@ -151,11 +152,24 @@ class WindowLoop {
         }
     }
 
+    /// Applies edits of shaders and the chosen step, and compares an exercise with its solution.
+    void follow_shaders() {
+        shaders_.follow(state_.options().exercise, glfwGetTime());
+        state_.set_shaders(shaders_.edits().texts(), shaders_.steps().chosen());
+        std::optional<DrawRequest> request = state_.request();
+        if (!request) return;
+        request->scene = state_.shared_scene();
+        if (std::optional<DrawTask> task = shaders_.exercise_check().begin(
+                state_.options().exercise, *request, state_.options().size))
+            drawer_.add(std::move(*task));
+    }
+
     /// While work is in progress, the window draws frames to show it.
     bool is_working() {
         return loader_.is_loading() || drawer_.is_busy() || accuracy_.is_measuring() ||
                effect_times_.state().is_running || captured_->state().is_running() ||
-               saving_.is_running();
+               saving_.is_running() || shaders_.edits().is_pending() ||
+               shaders_.exercise_check().is_working();
     }
 
     double seconds_since_last() {
@@ -213,7 +227,8 @@ class WindowLoop {
         const bool is_busy = request_picture() || was_busy || is_full_resolution_pending_ ||
                              health_.is_running() || thumbnails_.is_running();
         write_state(drawn, is_busy || accuracy_.is_working() || comparison_.is_working() ||
-                               saving_.is_running());
+                               saving_.is_running() || shaders_.edits().is_pending() ||
+                               shaders_.exercise_check().is_working());
     }
 
     void act(Action action) {
@@ -425,6 +440,7 @@ class WindowLoop {
         state["reduced"] = reduced_;
         state["costs"] = json_of(effect_times_.state());
         state["command_line"] = command_line();
+        state["shaders"] = shaders_.json();
         state["compare"] = comparison_.json();
         state["accuracy"] = accuracy_.json(state_.options());
         state["drawn"]["beside"] = drawn.beside;
