@@ -8,7 +8,10 @@
 #include <string_view>
 #include <utility>
 
+#include "effects/shader_source.h"
+
 namespace relief::shade {
+using namespace relief::shade::detail;
 
 namespace {
 
@@ -70,12 +73,19 @@ std::vector<Features> features_in(const FramePlan& plan) {
     return features;
 }
 
-/// The parts of all programs.
-std::set<std::string> parts_in(const FramePlan& plan, const FrameSettings& settings) {
+/// The parts of the surfaces' programs and of the finishing pass.
+std::set<std::string> parts_in(const Scene& scene, const FramePlan& plan,
+                               const FrameSettings& settings) {
+    const ShaderTexts texts = settings.shaders ? *settings.shaders : ShaderTexts{};
     std::set<std::string> parts;
-    for (const ShaderListing& listing :
-         shader_listings(plan, settings.shaders ? *settings.shaders : ShaderTexts{}))
+    for (const ShaderListing& listing : shader_listings(plan, texts))
         parts.insert(listing.files.begin(), listing.files.end());
+    if (!plan.finishing_pass) return parts;
+    const char* const samples =
+        settings.samples > 1 ? "picture.glsl#four_samples" : "picture.glsl#one_sample";
+    const SurfaceProgram finish = pass_program(
+        "picture", finishing_steps(settings.output, scene, samples), GlslVersion::core_330, texts);
+    parts.insert(finish.fragment.parts.begin(), finish.fragment.parts.end());
     return parts;
 }
 
@@ -116,11 +126,12 @@ std::vector<PictureStep> picture_steps(const Scene& scene, const FrameSettings& 
     std::vector<Features> before;
     std::set<std::string> parts_before;
     for (PictureStep& step : possible_steps(scene, settings)) {
-        const FramePlan plan = plan_of_step(scene_of_step(scene, step), settings, step);
+        const Scene shown = scene_of_step(scene, step);
+        const FramePlan plan = plan_of_step(shown, settings, step);
         std::vector<Features> features = features_in(plan);
         const bool tones = step.is_toned && has_tone(scene, settings);
         if (!steps.empty() && features == before && !tones) continue;
-        const std::set<std::string> parts = parts_in(plan, settings);
+        const std::set<std::string> parts = parts_in(shown, plan, settings);
         std::set_difference(parts.begin(), parts.end(), parts_before.begin(), parts_before.end(),
                             std::back_inserter(step.parts));
         before = std::move(features);

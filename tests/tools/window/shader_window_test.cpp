@@ -13,6 +13,7 @@ namespace {
 FILE_LABELS(window, slow);
 
 using nlohmann::json;
+using relief::Image;
 using test::changed_picture;
 using test::Display;
 using test::eventually;
@@ -42,7 +43,7 @@ TEST(ShaderWindow, EditsAnExerciseAndSavesIt) {
     });
     EXPECT_EQ(start["shaders"]["exercise"]["solved"], false);
     EXPECT_EQ(start["shaders"]["edited"], json({"phong.glsl#phong"}));
-    const test::Image hole = display->resting_picture();
+    const Image hole = display->resting_picture();
 
     // A letter at the beginning of the part breaks its first line.
     window.click_on("code");
