@@ -19,7 +19,6 @@ using test::Display;
 using test::eventually;
 using test::ViewerWindow;
 using test::Workplace;
-using testing::HasSubstr;
 
 /// Opens the panel.
 void open_shaders(ViewerWindow& window) {

@@ -225,6 +225,7 @@ void ShaderPanel::draw_choice() {
 void ShaderPanel::draw_code(const std::vector<LineMessage>& messages) {
     const float height = ImGui::GetTextLineHeight();
     const int count = line_count(text_);
+    const int rows = std::max(count, visible_lines - 3);  // All of the view takes clicks.
     ImGui::BeginChild("code", {0.0F, static_cast<float>(visible_lines) * height}, true,
                       ImGuiWindowFlags_HorizontalScrollbar);
     const ImVec2 padding = ImGui::GetStyle().FramePadding;
@@ -235,14 +236,14 @@ void ShaderPanel::draw_code(const std::vector<LineMessage>& messages) {
     ImGui::PushStyleColor(ImGuiCol_FrameBg, {0.0F, 0.0F, 0.0F, 0.0F});
     const int line_before = cursor_line_;
     const bool is_changed = ImGui::InputTextMultiline(
-        "##code", &text_, {width, static_cast<float>(count) * height + 2.0F * padding.y},
+        "##code", &text_, {width, static_cast<float>(rows) * height + 2.0F * padding.y},
         ImGuiInputTextFlags_AllowTabInput | ImGuiInputTextFlags_CallbackAlways, note_cursor,
         &cursor_line_);
-    probe_item("code");
     ImGui::PopStyleColor();
     draw_numbers(count, messages, at);
     if (cursor_line_ != line_before) show_line(cursor_line_);
     ImGui::EndChild();
+    probe_item("code");
     if (is_changed) edits_.set(part_, text_, now_);
 }
 
