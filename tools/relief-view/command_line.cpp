@@ -20,6 +20,7 @@
 #include "picture_comparison.h"
 #include "picture_sequence.h"
 #include "picture_sink.h"
+#include "pixel_probe.h"
 #include "portable_math.h"
 #include "saved_files.h"
 #include "scene_options.h"
@@ -148,6 +149,7 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
     add_step_options(app, options);
     add_exercise_options(app, options);
     add_debug_options(app, options);
+    add_probe_options(app, options);
     const Choices<Backend> backends = {
         {"auto", Backend::automatic}, {"osmesa", Backend::osmesa}, {"egl", Backend::egl}};
     add_choice(app, "--backend", options.backend, backends,
@@ -188,6 +190,7 @@ void settle(ViewOptions& options) {
     check_materials(options);
     check_environment(options);
     check_debug_options(options);
+    check_probe_options(options);
 }
 
 }  // namespace relief::tools

@@ -19,6 +19,7 @@
 #include "picture_comparison.h"
 #include "picture_sequence.h"
 #include "picture_sink.h"
+#include "pixel_probe.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
@@ -275,6 +276,8 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
     FramePlan plan = viewed_plan(options, composed.scene(), settings,
                                  chosen_plan(options, composed.scene(), settings), report);
     save_files(options, composed, stages);
+    std::optional<ProbedPixel> probed;
+    if (options.probe) probed = probed_pixel(options, composed, settings, stages, report);
     std::optional<Drawn> drawn;
     std::vector<DrawnStep> steps;
     if (options.steps) {
@@ -282,6 +285,7 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
     } else if (options.output || options.reference || options.effects.measures()) {
         drawn = draw(options, settings, composed, plan, stages, report);
     }
+    if (probed && !options.json) probe_summary(*probed, composed.scene()).print();
     if (options.explain_effects && !options.json) effect_summary(composed.scene(), plan).print();
     if (options.effects.print_shaders && !options.json) print_shaders(composed.scene(), plan);
 
@@ -293,10 +297,11 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
     if (options.json) {
         if (options.explain_effects)
             summary.add_part("effects", effect_summary(composed.scene(), plan));
+        if (probed) summary.add_part("", probe_summary(*probed, composed.scene()));
         if (options.effects.print_shaders) summary.add_json({{"shaders", shaders_json(plan)}});
         print_json(summary.json());
     } else if ((drawn || !steps.empty()) && !options.general.quiet) {
-        if (options.explain_effects || options.effects.print_shaders) print_text("\n");
+        if (probed || options.explain_effects || options.effects.print_shaders) print_text("\n");
         summary.print();
     }
     if (drawn && drawn->comparison) require_match(options, *drawn->comparison);
@@ -333,6 +338,7 @@ Command add_view_command(CLI::App& tool) {
          "240x160",
          "relief-view data/vase.obj --material gold --light point:2,2,2,4 --save-scene "
          "out/golden.json",
+         "relief-view data/vase.obj --size 640x480 --probe 320,240",
          "relief-view data/vase.obj --diffuse-map data/bricks-diffuse.png --explain-effects"});
     return {&tool, [&tool, options] { return run(tool, *options); }};
 }

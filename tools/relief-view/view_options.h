@@ -172,10 +172,11 @@ struct ViewOptions {
     std::optional<float> ui_scale;                    ///< Scale of the user interface.
     bool no_state = false;  ///< The layout of the window is neither read nor written.
     bool list_bindings = false;
+    std::optional<glm::ivec2> probe;  ///< The pixel to explain: column and row.
 
     /// True if no option asks for output.
     [[nodiscard]] bool wants_window() const {
-        return !output && !save_scene && !save_model && !reference && !explain_effects &&
+        return !output && !save_scene && !save_model && !reference && !explain_effects && !probe &&
                !effects.print_shaders && !effects.measures();
     }
 

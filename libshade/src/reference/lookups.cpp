@@ -104,10 +104,22 @@ glm::dvec4 SceneTexels::look_up(const Texture& texture, ImageUse use, const glm:
                                 Trace& trace) const {
     const Texels& texels = get(texture.image, use);
     trace.look_up({uv * glm::dvec2(texels.width(), texels.height()), 0.0});
-    if (texture.filter == TextureFilter::nearest) {
-        return texels.nearest(uv, texture.wrap_u, texture.wrap_v, trace);
+    const glm::dvec4 value = texture.filter == TextureFilter::nearest
+                                 ? texels.nearest(uv, texture.wrap_u, texture.wrap_v, trace)
+                                 : texels.bilinear(uv, texture.wrap_u, texture.wrap_v);
+    if (Recorder* const recorder = trace.recorder()) {
+        ProbeLookup lookup;
+        lookup.image = texture.image;
+        lookup.use = use;
+        lookup.second_texcoords = texture.second_texcoords;
+        lookup.filter = texture.filter;
+        lookup.size = {texels.width(), texels.height()};
+        lookup.texcoord = uv;
+        lookup.texel = uv * glm::dvec2(lookup.size);
+        lookup.value = value;
+        recorder->add_lookup(lookup);
     }
-    return texels.bilinear(uv, texture.wrap_u, texture.wrap_v);
+    return value;
 }
 
 // Environments

@@ -33,6 +33,7 @@
 
 #include "effects/light_rows.h"
 #include "environment/convolution.h"
+#include "reference/recorder.h"
 #include "relief/export.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/image.h"
@@ -50,6 +51,8 @@ namespace RELIEF_API reference {
 
 // Lookups
 
+class Recorder;
+
 /// The record of a ray on its way to a color: every discrete decision (which texel, which side of a
 /// light), and every place in a texture. Rays whose decisions differ may differ by a jump, so that
 /// rounding may decide what is seen; places that lie far apart mean a texture that OpenGL averages.
@@ -58,9 +61,27 @@ class Trace {
     Trace() = default;
     /// \param needs_radiance  false for a ray beside a pixel: it makes the same decisions and
     ///                        lookups as any ray, but its radiance is not computed
-    explicit Trace(bool needs_radiance) : needs_radiance_(needs_radiance) {}
+    /// \param recorder        null, or the recorder of the pixel's terms (recorder.h)
+    explicit Trace(bool needs_radiance, Recorder* recorder = nullptr)
+        : needs_radiance_(needs_radiance), recorder_(recorder) {}
 
     [[nodiscard]] bool needs_radiance() const { return needs_radiance_; }
+    [[nodiscard]] Recorder* recorder() const { return recorder_; }
+
+    /// Pauses the recording of a trace while it exists.
+    class Unrecorded {
+      public:
+        explicit Unrecorded(Trace& trace) : trace_(trace), recorder_(trace.recorder_) {
+            trace_.recorder_ = nullptr;
+        }
+        ~Unrecorded() { trace_.recorder_ = recorder_; }
+        Unrecorded(const Unrecorded&) = delete;
+        Unrecorded& operator=(const Unrecorded&) = delete;
+
+      private:
+        Trace& trace_;
+        Recorder* recorder_;
+    };
 
     void decide(std::int64_t decision) {
         constexpr std::uint64_t fnv_prime = 0x100000001B3ULL;
@@ -86,6 +107,7 @@ class Trace {
     std::vector<glm::dvec3> places_;
     bool is_doubtful_ = false;
     bool needs_radiance_ = true;
+    Recorder* recorder_ = nullptr;
 };
 
 /// An image as RGBA: gray as (g, g, g, 1), gray with alpha as (g, g, g, a), RGB as (r, g, b, 1).
@@ -363,8 +385,8 @@ glm::dvec3 fresnel_factor(const Material& material, double n_dot_v);
 
 /// The light from a surface to the eye.
 struct Shaded {
-    glm::dvec3 radiance{0.0};  ///< Unrestricted, like the data of the scene.
-    double alpha = 1.0;        ///< As Material says, whatever the alpha mode.
+    TermSum radiance;    ///< Unrestricted, like the data of the scene.
+    double alpha = 1.0;  ///< As Material says, whatever the alpha mode.
 };
 
 Shaded shade(const PreparedScene& prepared, const Hit& hit, const Material& material, Trace& trace);

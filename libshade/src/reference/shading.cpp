@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Material's formula as material.h states it: Phong's model [Phong 1975], [Blinn 1977], and glTF's
 // metallic-roughness (glTF 2.0, appendix B; [Walter et al. 2007]). World space, linear light, in
-// double; hard cases as in shaders/README.md. Fresnel's formulas have a complex index of
-// refraction. Sources: [Born and Wolf 1999], sections 1.5.2 and 14.2; [Schlick 1994];
-// KHR_lights_punctual for ranges and cones.
-#include "reference/reference_parts.h"
-
+// double; hard cases as in shaders/README.md. Every term is a TermSum, which a recorder can record.
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
@@ -14,271 +10,19 @@
 #include <vector>
 
 #include "portable_math.h"
+#include "reference/reference_parts.h"
+#include "reference/shading_parts.h"
 #include "relief/shade/scene.h"
 
 namespace relief::shade::reference {
 using namespace relief::detail;
 using namespace relief::shade::detail;
 
-// Fresnel
-
-double fresnel(std::complex<double> index, double cosine) {
-    if (index == 1.0) return 0.0;
-    if (index == 0.0 || cosine <= 0.0) return 1.0;
-    // Snell's law: the sine inside is the sine outside divided by the index.
-    const std::complex<double> cosine_inside =
-        std::sqrt(1.0 - (1.0 - cosine * cosine) / (index * index));
-    const std::complex<double> across =
-        (cosine - index * cosine_inside) / (cosine + index * cosine_inside);
-    const std::complex<double> along =
-        (index * cosine - cosine_inside) / (index * cosine + cosine_inside);
-    return 0.5 * (std::norm(across) + std::norm(along));
-}
-
-glm::dvec3 fresnel_factor(const Material& material, double n_dot_v) {
-    const glm::dvec3 reflectivity(material.reflectivity);
-    if (reflectivity == glm::dvec3(0.0)) return glm::dvec3(0.0);
-    const double cosine = glm::clamp(n_dot_v, 0.0, 1.0);
-    glm::dvec3 factor(0.0);
-    switch (material.fresnel) {
-        case FresnelModel::schlick:
-            factor = reflectivity + (glm::dvec3(material.grazing_reflectivity) - reflectivity) *
-                                        portable::pow(1.0 - cosine, 5.0);
-            break;
-        case FresnelModel::dielectric:
-            factor = reflectivity * fresnel(static_cast<double>(material.refractive_index), cosine);
-            break;
-        case FresnelModel::conductor:
-            for (int i = 0; i < 3; ++i) {
-                const std::complex<double> index(
-                    static_cast<double>(material.conductor_index[i]),
-                    static_cast<double>(material.conductor_absorption[i]));
-                factor[i] = reflectivity[i] * fresnel(index, cosine);
-            }
-            break;
-    }
-    return glm::clamp(factor, 0.0, 1.0);
-}
-
-// Thin films
-
 namespace {
-
-/// Returns the color of light whose parts differ by a path in nanometers, relative to white. The
-/// sensitivities are Gaussians over wave numbers [Belcour and Barla 2017].
-///
-/// \param sign  -1 where one part is reflected with the opposite phase, for X, Y and Z
-glm::dvec3 interference(double path, const glm::dvec3& sign) {
-    struct Gaussian {
-        int component;
-        double height, position, variance;
-    };
-    constexpr Gaussian gaussians[] = {{0, 5.4856e-13, 1.6810e6, 4.3278e9},
-                                      {1, 4.4201e-13, 1.7953e6, 9.3046e9},
-                                      {2, 5.2481e-13, 2.2084e6, 6.6121e9},
-                                      {0, 9.7470e-14, 2.2399e6, 4.5282e9}};
-    constexpr double white = 1.0685e-7;
-    const double phase = 2.0 * std::numbers::pi * path * 1e-9;
-    glm::dvec3 xyz(0.0);
-    for (const auto& [component, height, position, variance] : gaussians) {
-        xyz[component] +=
-            sign[component] * height / white * std::sqrt(2.0 * std::numbers::pi * variance) *
-            portable::cos(position * phase) * portable::exp(-variance * phase * phase);
-    }
-    const glm::dmat3 rgb_from_xyz(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108,
-                                  -0.2040259, -0.4985314, 0.0415560, 1.0572252);
-    return rgb_from_xyz * xyz;
-}
-
-double schlick(double f0, double cosine) {
-    return f0 + (1.0 - f0) * portable::pow(1.0 - cosine, 5.0);
-}
-
-}  // namespace
-
-glm::dvec3 film_reflectance(const glm::dvec3& f0, double cosine, double index, double thickness) {
-    const double cosine_inside = std::sqrt(1.0 - (1.0 - cosine * cosine) / (index * index));
-    const double outer = schlick(fresnel(index, 1.0), cosine);
-    const double through = 1.0 - outer;
-    glm::dvec3 sign(0.0);
-    glm::dvec3 from_base(0.0);
-    glm::dvec3 amplitude(0.0);
-    for (int i = 0; i < 3; ++i) {
-        const double root = std::sqrt(std::clamp(f0[i], 0.0, 0.9999));
-        const double base_index = (1.0 + root) / (1.0 - root);
-        const double inner = schlick(fresnel(base_index / index, 1.0), cosine_inside);
-        const double bounce = std::clamp(outer * inner, 1e-5, 0.9999);
-        sign[i] = base_index < index ? 1.0 : -1.0;
-        from_base[i] = through * through * inner / (1.0 - bounce);
-        amplitude[i] = std::sqrt(bounce);
-    }
-    // The path difference of the first order; orders above 2 are left out.
-    const double path = 2.0 * index * thickness * cosine_inside;
-    const glm::dvec3 first = (from_base - through) * amplitude;
-    return glm::max(outer + from_base + 2.0 * first * interference(path, sign) +
-                        2.0 * first * amplitude * interference(2.0 * path, glm::dvec3(1.0)),
-                    0.0);
-}
-
-// Lights
-
-namespace {
-
-/// The light of one source at a point, as lights.h defines it: irradiance over pi at normal
-/// incidence. A light that touches the point sends nothing; a close one no more than max_light.
-struct Incoming {
-    glm::dvec3 light_world;  ///< Unit, to the light.
-    glm::dvec3 irradiance;
-    glm::dvec3 highlight_irradiance;
-    bool casts_shadow = false;
-};
-
-/// A light closer than this touches the point: a float can square this distance.
-constexpr double touching = 1e-18;
-
-double fall_off(const PointLight& light, double distance) {
-    double share = light.falloff == Falloff::none ? 1.0 : 1.0 / (distance * distance);
-    if (light.range) {
-        const double part = distance / static_cast<double>(*light.range);
-        share *= std::clamp(1.0 - part * part * part * part, 0.0, 1.0);
-    }
-    return share;
-}
-
-glm::dvec3 limited_light(const glm::dvec3& irradiance) {
-    return glm::min(irradiance, glm::dvec3(static_cast<double>(max_light)));
-}
-
-/// \param share  the fraction of the light that its cone transmits, by the direction to the light
-template <typename Share>
-void add(const PointLight& light, const glm::dvec3& position, Share share, bool casts_shadow,
-         std::vector<Incoming>& incoming) {
-    const glm::dvec3 offset = glm::dvec3(light.position_world) - position;
-    const double distance = glm::length(offset);
-    if (!(distance > touching)) return;
-    const glm::dvec3 to_light = offset / distance;
-    const double factor = fall_off(light, distance) * share(to_light);
-    const glm::vec3 highlights = light.highlight_intensity.value_or(light.intensity);
-    incoming.push_back({to_light, limited_light(glm::dvec3(light.intensity) * factor),
-                        limited_light(glm::dvec3(highlights) * factor), casts_shadow});
-}
-
-double cone_share(const SpotLight& spot, const glm::dvec3& light_world) {
-    // Cones with a smaller difference of cosines have a sharp edge (KHR_lights_punctual).
-    constexpr double min_difference = 1e-3;
-    const double cosine = glm::dot(-light_world, glm::normalize(glm::dvec3(spot.direction_world)));
-    const double inner = portable::cos(static_cast<double>(spot.inner_cone));
-    const double outer = portable::cos(static_cast<double>(spot.outer_cone));
-    const double share =
-        std::clamp((cosine - outer) / std::max(min_difference, inner - outer), 0.0, 1.0);
-    return share * share;
-}
-
-/// Returns the light of all sources but those that touch the point, without shadows.
-/// \param casting  the kind of the light that casts a shadow
-std::vector<Incoming> all_light(const Scene& scene, ShadowTerm casting,
-                                const glm::dvec3& position_world) {
-    std::vector<Incoming> incoming;
-    bool is_found = false;
-    const auto casts = [&](ShadowTerm kind, const auto& light) {
-        const bool is_first = kind == casting && !is_found && shines(light);
-        is_found |= is_first;
-        return is_first;
-    };
-    for (const DirectionalLight& light : scene.directional_lights) {
-        if (!light.on) continue;
-        incoming.push_back({-glm::normalize(glm::dvec3(light.direction_world)),
-                            glm::dvec3(light.irradiance),
-                            glm::dvec3(light.highlight_irradiance.value_or(light.irradiance)),
-                            casts(ShadowTerm::directional_light, light)});
-    }
-    for (const PointLight& light : scene.point_lights) {
-        if (!light.on) continue;
-        add(
-            light, position_world, [](const glm::dvec3&) { return 1.0; },
-            casts(ShadowTerm::point_light, light), incoming);
-    }
-    for (const SpotLight& spot : scene.spot_lights) {
-        if (!spot.point.on) continue;
-        add(
-            spot.point, position_world,
-            [&](const glm::dvec3& to_light) { return cone_share(spot, to_light); },
-            casts(ShadowTerm::spot_light, spot), incoming);
-    }
-    return incoming;
-}
-
-// Materials
 
 /// The smallest roughness of metallic-roughness. On smoother surfaces, highlights of point lights
 /// would vanish.
 constexpr double min_roughness = 0.045;
-
-/// A point to be shaded, with its textures.
-struct Context {
-    const PreparedScene& prepared;
-    const Material& material;
-    const Surface& surface;
-    Trace& trace;
-
-    /// Returns the texel of a slot of the material; white without a texture.
-    [[nodiscard]] glm::dvec4 look_up(TextureSlot slot) const {
-        const Texture* const texture = find_texture(material, slot);
-        if (texture == nullptr) return glm::dvec4(1.0);
-        const bool second = texture->second_texcoords;
-        if (!(second ? surface.has_texcoord_2 : surface.has_texcoord)) return glm::dvec4(1.0);
-        return prepared.texels.look_up(*texture, slot_info(slot).use,
-                                       second ? surface.texcoord_2 : surface.texcoord, trace);
-    }
-};
-
-/// Returns the opacity of a surface, whatever its alpha mode.
-double alpha_at(const Context& context) {
-    return static_cast<double>(context.material.opacity) *
-           context.look_up(TextureSlot::base_color).a * context.surface.color.a *
-           context.look_up(TextureSlot::opacity).r;
-}
-
-/// Tells whether a surface between a point and the light blocks it.
-bool blocks(const PreparedScene& prepared, const Hit& hit, Trace& trace) {
-    const Material& material = prepared.material_of(hit.instance, hit.triangle);
-    if (!casts_shadow(material)) return false;
-    if (material.alpha_mode == AlphaMode::opaque) return true;
-    const Surface surface = surface_at(prepared, hit, material, trace);
-    return alpha_at({prepared, material, surface, trace}) >=
-           static_cast<double>(material.alpha_cutoff);
-}
-
-/// Returns the share of the main light that reaches a surface.
-double visible_share(const Context& context, const Surface& at) {
-    const ShadowCasters& shadow = *context.prepared.shadow;
-    const ShadowView& view = shadow.view();
-    const glm::dvec3 lifted = at.position_world + view.lift * at.normal_world;
-    double visible = 0.0;
-    for (const glm::dvec2& point : view.points) {
-        const std::vector<Hit> hits = shadow.between(lifted, point);
-        const bool blocked = std::any_of(hits.begin(), hits.end(), [&](const Hit& hit) {
-            return blocks(context.prepared, hit, context.trace);
-        });
-        context.trace.decide(blocked ? 1 : 0);
-        if (!blocked) visible += 1.0;
-    }
-    return visible / static_cast<double>(view.points.size());
-}
-
-/// Returns the light of all sources but those that touch the point.
-std::vector<Incoming> incoming_light(const Context& context, const Surface& at) {
-    const std::unique_ptr<ShadowCasters>& shadow = context.prepared.shadow;
-    std::vector<Incoming> incoming = all_light(
-        context.prepared.scene, shadow ? shadow->view().kind : ShadowTerm::none, at.position_world);
-    for (Incoming& light : incoming) {
-        if (!light.casts_shadow) continue;
-        const double share = visible_share(context, at);
-        light.irradiance *= share;
-        light.highlight_irradiance *= share;
-    }
-    return incoming;
-}
 
 /// Returns the power of a cosine; 1 for the exponent 0, for every cosine.
 double power(double cosine, double exponent) {
@@ -286,34 +30,35 @@ double power(double cosine, double exponent) {
 }
 
 /// Returns the term s of the formula.
-double highlight(const Material& material, const Surface& at, const glm::dvec3& light) {
+double highlight(const Context& context, const Surface& at, const glm::dvec3& light) {
+    const Material& material = context.material;
     const double shininess = static_cast<double>(material.shininess);
     const glm::dvec3& n = at.normal_world;
     if (material.specular_model == SpecularModel::phong) {
         const glm::dvec3 mirrored = 2.0 * glm::dot(n, light) * n - light;
-        return power(glm::dot(mirrored, at.view_world), shininess);
+        const double cosine = glm::dot(mirrored, at.view_world);
+        context.note("r.v", cosine);
+        context.note("shininess", shininess);
+        return power(cosine, shininess);
     }
     const glm::dvec3 sum = light + at.view_world;
     const double length = glm::length(sum);
     // An undefined half vector counts as perpendicular to the normal.
     const double cosine = length > 1e-15 ? glm::dot(n, sum) / length : 0.0;
+    context.note("n.h", cosine);
+    context.note("shininess", shininess);
     const double s = power(cosine, shininess);
     const bool normalized = material.specular_model == SpecularModel::blinn_phong_normalized;
     return normalized ? s * (shininess + 2.0) / 8.0 : s;
 }
 
-/// Returns the unit half vector, or zero if light and eye are opposite.
-glm::dvec3 half_vector(const glm::dvec3& light, const Surface& at) {
-    const glm::dvec3 sum = light + at.view_world;
-    const double length = glm::length(sum);
-    return length > 1e-15 ? sum / length : glm::dvec3(0.0);
-}
-
 /// Returns the term k of the formula.
-glm::dvec3 highlight_color(const Material& material, const Surface& at, const glm::dvec3& light) {
-    const glm::dvec3 specular(material.specular);
-    if (!material.highlight_fresnel) return specular;
+glm::dvec3 highlight_color(const Context& context, const Surface& at, const glm::dvec3& light) {
+    const glm::dvec3 specular(context.material.specular);
+    if (!context.material.highlight_fresnel) return specular;
     const double cosine = std::clamp(glm::dot(at.view_world, half_vector(light, at)), 0.0, 1.0);
+    context.note("ks", specular);
+    context.note("v.h", cosine);
     return specular + glm::max(1.0 - specular, 0.0) * portable::pow(1.0 - cosine, 5.0);
 }
 
@@ -335,14 +80,16 @@ glm::dvec3 ambient_of(const Context& context) {
 }
 
 /// Returns a term of Phong's model as it is added.
-glm::dvec3 limited(const Context& context, const glm::dvec3& term) {
-    return context.prepared.scene.clamp_terms ? glm::clamp(term, 0.0, 1.0) : term;
+TermSum&& limited(const Context& context, TermSum&& term) {
+    if (context.prepared.scene.clamp_terms)
+        term.become("clamp", glm::clamp(term.value(), 0.0, 1.0));
+    return std::move(term);
 }
 
 /// The sums over all lights at one point, before they are multiplied by the surface's textures.
 struct LightSums {
-    glm::dvec3 scattered{0.0};   ///< sum L diffuse max(n.l, 0)
-    glm::dvec3 highlights{0.0};  ///< sum H s k [n.l > 0]
+    TermSum scattered;   ///< sum L diffuse max(n.l, 0)
+    TermSum highlights;  ///< sum H s k [n.l > 0]
 };
 
 /// Tells whether the surface faces the light, and the light's radiance is needed.
@@ -357,11 +104,14 @@ LightSums light_sums(const Context& context, const Surface& at) {
         const double n_dot_l = glm::dot(at.normal_world, light.light_world);
         if (!adds_light(context, n_dot_l)) continue;
         sums.scattered +=
-            limited(context, light.irradiance * n_dot_l * glm::dvec3(context.material.diffuse));
-        sums.highlights +=
-            limited(context, light.highlight_irradiance *
-                                 highlight(context.material, at, light.light_world) *
-                                 highlight_color(context.material, at, light.light_world));
+            limited(context, {context.recorder(), ProbeTermKind::diffuse, light.recorded,
+                              named("L", light.irradiance), named("n.l", n_dot_l),
+                              named("kd", glm::dvec3(context.material.diffuse))});
+        const double s = highlight(context, at, light.light_world);
+        const glm::dvec3 k = highlight_color(context, at, light.light_world);
+        sums.highlights += limited(
+            context, {context.recorder(), ProbeTermKind::highlight, light.recorded,
+                      named("H", light.highlight_irradiance), named("s", s), named("k", k)});
     }
     return sums;
 }
@@ -373,11 +123,16 @@ LightSums interpolated_light_sums(const Context& context, const Hit& hit) {
     }
     LightSums sums;
     for (int corner = 0; corner < 3; ++corner) {
-        const LightSums there =
-            light_sums(context, surface_at_corner(context.prepared, hit, corner));
-        sums.scattered += there.scattered * hit.barycentric[corner];
-        sums.highlights += there.highlights * hit.barycentric[corner];
+        const Surface at = surface_at_corner(context.prepared, hit, corner);
+        if (Recorder* const recorder = context.recorder())
+            recorder->begin_corner(static_cast<std::size_t>(corner), at.normal_world,
+                                   at.view_world);
+        LightSums there = light_sums(context, at);
+        const Named<double> weight = named("weight", hit.barycentric[corner]);
+        sums.scattered += there.scattered.multiply(weight);
+        sums.highlights += there.highlights.multiply(weight);
     }
+    if (Recorder* const recorder = context.recorder()) recorder->end_corners();
     return sums;
 }
 
@@ -405,6 +160,8 @@ glm::dvec3 reflected(const Context& context, const glm::dvec3& normal, double ro
     if (!context.prepared.environment) return glm::dvec3(0.0);
     const glm::dvec3& view = context.surface.view_world;
     const glm::dvec3 mirrored = 2.0 * glm::dot(normal, view) * normal - view;
+    context.note("d", mirrored);
+    context.note("roughness", roughness);
     return context.prepared.environment->blurred(mirrored, roughness, context.trace);
 }
 
@@ -425,9 +182,17 @@ glm::dvec3 emission_texel(const Context& context) {
     return glm::dvec3(context.look_up(TextureSlot::emission));
 }
 
+/// Returns a sum with one term.
+template <typename... Values>
+TermSum term(const Context& context, ProbeTermKind kind, const Named<Values>&... factors) {
+    return {context.recorder(), kind, no_light, factors...};
+}
+
 /// Returns the emission of metallic-roughness.
-glm::dvec3 emitted(const Context& context) {
-    return glm::dvec3(context.material.emission) * emission_texel(context);
+TermSum emitted(const Context& context) {
+    return term(context, ProbeTermKind::emission,
+                named("ke", glm::dvec3(context.material.emission)),
+                named("texel", emission_texel(context)));
 }
 
 /// Returns the term N of the formula.
@@ -436,21 +201,24 @@ glm::dvec3 environment_tint(const Context& context) {
     return has_tint ? along_normal(context, 0.0) : glm::dvec3(1.0);
 }
 
-glm::dvec3 phong_radiance(const Context& context, const Hit& hit, const glm::dvec3& tint) {
+TermSum phong_radiance(const Context& context, const Hit& hit, const glm::dvec3& tint) {
     const Material& material = context.material;
     const Surface& at = context.surface;
-    const glm::dvec3 diffuse(material.diffuse);
-    const LightSums lights = interpolated_light_sums(context, hit);
-    const glm::dvec3 ambient = limited(context, glm::dvec3(material.ambient) * ambient_of(context));
-    const glm::dvec3 around = environment_tint(context);
+    LightSums lights = interpolated_light_sums(context, hit);
+    const Named<glm::dvec3> around = named("N", environment_tint(context));
 
-    const glm::dvec3 scattered =
-        around * tint *
-        (occlusion(context) *
-             (ambient + limited(context, diffuse * environment_irradiance(context))) +
-         lights.scattered);
-    const glm::dvec3 highlights =
-        around * glm::dvec3(context.look_up(TextureSlot::specular)) * lights.highlights;
+    TermSum scattered = limited(
+        context, term(context, ProbeTermKind::ambient, named("ka", glm::dvec3(material.ambient)),
+                      named("La", ambient_of(context))));
+    scattered += limited(context, term(context, ProbeTermKind::environment_light,
+                                       named("kd", glm::dvec3(material.diffuse)),
+                                       named("E(n)", environment_irradiance(context))));
+    scattered.multiply(named("occlusion", occlusion(context)));
+    scattered += std::move(lights.scattered);
+    scattered.multiply(around, named("tint", tint));
+    TermSum highlights = std::move(lights.highlights);
+    highlights.multiply(
+        around, named("specular texel", glm::dvec3(context.look_up(TextureSlot::specular))));
     // Without an environment there are neither reflections nor transmitted light.
     glm::dvec3 mirrors(0.0);
     double transmission = 0.0;
@@ -458,16 +226,24 @@ glm::dvec3 phong_radiance(const Context& context, const Hit& hit, const glm::dve
         mirrors = fresnel_factor(material, glm::dot(at.normal_world, at.view_world));
         transmission = static_cast<double>(material.transmission);
     }
-    glm::dvec3 radiance =
-        highlights + limited(context, glm::dvec3(material.emission)) * emission_texel(context);
-    radiance += (1.0 - mirrors) * (1.0 - transmission) * scattered;
+    const Named<glm::dvec3> kept = named("1 - F", 1.0 - mirrors);
+    TermSum radiance = std::move(highlights);
+    TermSum emission = limited(context, term(context, ProbeTermKind::emission,
+                                             named("ke", glm::dvec3(material.emission))));
+    radiance += emission.multiply(named("texel", emission_texel(context)));
+    radiance += scattered.multiply(kept, named("1 - T", 1.0 - transmission));
     if (mirrors != glm::dvec3(0.0)) {
         const double roughness = static_cast<double>(material.reflection_roughness);
-        radiance += mirrors * (material.reflection_by_normal
-                                   ? along_normal(context, roughness)
-                                   : reflected(context, at.normal_world, roughness));
+        context.note("n.v", glm::dot(at.normal_world, at.view_world));
+        const glm::dvec3 seen = material.reflection_by_normal
+                                    ? along_normal(context, roughness)
+                                    : reflected(context, at.normal_world, roughness);
+        radiance += term(context, ProbeTermKind::reflection, named("F", mirrors), named("R", seen));
     }
-    if (transmission > 0.0) radiance += (1.0 - mirrors) * transmission * refracted(context);
+    if (transmission > 0.0) {
+        radiance += term(context, ProbeTermKind::refraction, kept, named("T", transmission),
+                         named("refracted", refracted(context)));
+    }
     return radiance;
 }
 
@@ -547,8 +323,8 @@ Microfacets microfacets_at(const Context& context, const glm::dvec3& tint) {
 }
 
 /// Returns pi D V of GGX about a normal. \param n_dot_l  positive
-double ggx_lobe(const glm::dvec3& normal, const glm::dvec3& half, const Surface& at, double n_dot_l,
-                double roughness) {
+double ggx_lobe(const Context& context, const glm::dvec3& normal, const glm::dvec3& half,
+                const Surface& at, double n_dot_l, double roughness) {
     const double alpha = roughness * roughness;
     const double squared = alpha * alpha;
     const double n_dot_v = std::clamp(glm::dot(normal, at.view_world), 0.0, 1.0);
@@ -558,6 +334,11 @@ double ggx_lobe(const glm::dvec3& normal, const glm::dvec3& half, const Surface&
     const double visibility =
         0.5 / (n_dot_l * std::sqrt(n_dot_v * n_dot_v * (1.0 - squared) + squared) +
                n_dot_v * std::sqrt(n_dot_l * n_dot_l * (1.0 - squared) + squared));
+    context.note("n.v", n_dot_v);
+    context.note("n.h", n_dot_h);
+    context.note("alpha", alpha);
+    context.note("D", distribution);
+    context.note("V", visibility);
     return std::numbers::pi * distribution * visibility;
 }
 
@@ -653,10 +434,12 @@ glm::dvec3 highlight_gain(const Context& context, const Microfacets& facets) {
 
 /// Returns pi D V of the material's facets, which may be wider along one axis than along the other.
 /// \param n_dot_l  positive
-double facet_lobe(const Microfacets& facets, const glm::dvec3& light, const glm::dvec3& half,
-                  const Surface& at, double n_dot_l) {
+double facet_lobe(const Context& context, const Microfacets& facets, const glm::dvec3& light,
+                  const glm::dvec3& half, double n_dot_l) {
+    const Surface& at = context.surface;
     const Anisotropy& a = facets.anisotropy;
-    if (a.strength == 0.0) return ggx_lobe(at.normal_world, half, at, n_dot_l, facets.roughness);
+    if (a.strength == 0.0)
+        return ggx_lobe(context, at.normal_world, half, at, n_dot_l, facets.roughness);
     const double alpha = facets.roughness * facets.roughness;
     const double along = glm::mix(alpha, 1.0, a.strength * a.strength);
     const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
@@ -675,25 +458,42 @@ double facet_lobe(const Microfacets& facets, const glm::dvec3& light, const glm:
         return glm::length(glm::dvec3(along * glm::dot(a.rough_axis, direction),
                                       alpha * glm::dot(a.smooth_axis, direction), cosine));
     };
-    return distribution * 0.5 /
-           (n_dot_l * stretched(at.view_world, n_dot_v) + n_dot_v * stretched(light, n_dot_l));
+    const double masked =
+        n_dot_l * stretched(at.view_world, n_dot_v) + n_dot_v * stretched(light, n_dot_l);
+    context.note("n.v", n_dot_v);
+    context.note("n.h", n_dot_h);
+    context.note("alpha", alpha);
+    context.note("alpha_t", along);
+    context.note("D", distribution / std::numbers::pi);
+    context.note("V", 0.5 / masked);
+    return distribution * 0.5 / masked;
 }
 
 /// Returns pi D V f gain + (1 - f') c, the factor of one light.
 /// \param n_dot_l  positive  \param gain  highlight_gain()
-glm::dvec3 scattered_by(const Context& context, const Microfacets& facets, const glm::dvec3& light,
-                        double n_dot_l, const glm::dvec3& gain) {
+TermSum scattered_by(const Context& context, const Microfacets& facets, const Incoming& light,
+                     double n_dot_l, const glm::dvec3& gain) {
     const Surface& at = context.surface;
-    const glm::dvec3 half = half_vector(light, at);
-    if (half == glm::dvec3(0.0)) return facets.scattering;
+    const auto begin = [&](ProbeTermKind kind, const auto&... factors) {
+        return TermSum(context.recorder(), kind, light.recorded, factors...);
+    };
+    const glm::dvec3 half = half_vector(light.light_world, at);
+    if (half == glm::dvec3(0.0))
+        return begin(ProbeTermKind::diffuse, named("c", facets.scattering));
     const double v_dot_h = std::clamp(glm::dot(at.view_world, half), 0.0, 1.0);
     const double grazing = portable::pow(1.0 - v_dot_h, 5.0);
     const auto [mirrored, blocked] =
         with_film(context, facets, v_dot_h, 1.0,
                   {glm::mix(facets.f0, glm::dvec3(facets.f90), grazing),
                    glm::mix(facets.blocking_f0, glm::dvec3(facets.f90), grazing)});
-    return (1.0 - blocked) * facets.scattering +
-           mirrored * gain * facet_lobe(facets, light, half, at, n_dot_l);
+    TermSum sum = begin(ProbeTermKind::diffuse, named("1 - f'", 1.0 - blocked),
+                        named("c", facets.scattering));
+    context.note("v.h", v_dot_h);
+    context.note("f0", facets.f0);
+    const double lobe = facet_lobe(context, facets, light.light_world, half, n_dot_l);
+    sum += begin(ProbeTermKind::highlight, named("f", mirrored), named("gain", gain),
+                 named("pi D V", lobe));
+    return sum;
 }
 
 /// Returns the normal that mirrors the environment.
@@ -709,10 +509,11 @@ glm::dvec3 mirror_normal(const Microfacets& facets, const Surface& at) {
 
 /// Returns the light from all directions: ambient light, and the scattered and reflected
 /// environment.
-glm::dvec3 indirect_light(const Context& context, const Microfacets& facets) {
+TermSum indirect_light(const Context& context, const Microfacets& facets) {
     const Surface& at = context.surface;
     const Mirrored facing = with_film(context, facets, 1.0, 1.0, {facets.f0, facets.f0});
-    glm::dvec3 light = ambient_of(context) * (facets.scattering + facing.mirrored);
+    TermSum light = term(context, ProbeTermKind::ambient, named("La", ambient_of(context)),
+                         named("c + f0", facets.scattering + facing.mirrored));
     if (context.prepared.environment) {
         const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
         const glm::dvec2 albedo = albedo_of(context, n_dot_v, facets.roughness);
@@ -720,10 +521,21 @@ glm::dvec3 indirect_light(const Context& context, const Microfacets& facets) {
                                         {facets.f0 * albedo.x + facets.f90 * albedo.y,
                                          facets.blocking_f0 * albedo.x + facets.f90 * albedo.y});
         const Mirrored later = bounced(context, facets, n_dot_v, albedo, once);
-        light += (1.0 - once.blocked - later.blocked) * facets.scattering *
-                 environment_irradiance(context);
-        light += once.mirrored * reflected(context, mirror_normal(facets, at), facets.roughness);
-        if (later.mirrored != glm::dvec3(0.0)) light += later.mirrored * along_normal(context, 1.0);
+        light +=
+            term(context, ProbeTermKind::environment_light,
+                 named("unmirrored", 1.0 - once.blocked - later.blocked),
+                 named("c", facets.scattering), named("E(n)", environment_irradiance(context)));
+        context.note("n.v", n_dot_v);
+        context.note("f0", facets.f0);
+        context.note("A", albedo.x);
+        context.note("B", albedo.y);
+        const glm::dvec3 seen = reflected(context, mirror_normal(facets, at), facets.roughness);
+        light += term(context, ProbeTermKind::reflection, named("f0 A + f90 B", once.mirrored),
+                      named("R", seen));
+        if (later.mirrored != glm::dvec3(0.0)) {
+            light += term(context, ProbeTermKind::interreflection, named("bounced", later.mirrored),
+                          named("R", along_normal(context, 1.0)));
+        }
     }
     return light;
 }
@@ -738,10 +550,10 @@ glm::dvec3 volume_indices(const MetallicRoughness& model) {
 }
 
 /// Returns the light from behind the surface.
-glm::dvec3 passing_light(const Context& context, const Microfacets& facets, const Hit& hit) {
+TermSum passing_light(const Context& context, const Microfacets& facets, const Hit& hit) {
     const Surface& at = context.surface;
     if (!is_transmissive(context.material, *context.prepared.instances[hit.instance].mesh))
-        return glm::dvec3(0.0);
+        return {};
     const MetallicRoughness& model = *context.material.metallic_roughness;
     const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
     const glm::dvec3 blocked =
@@ -769,31 +581,41 @@ glm::dvec3 passing_light(const Context& context, const Microfacets& facets, cons
         light.r = seen(indices.r).r;
         light.b = seen(indices.b).b;
     }
+    context.note("length", length);
+    context.note("blur", blur);
     if (model.attenuation_distance) {
+        context.note("unattenuated", light);
         const double lengths = length / static_cast<double>(*model.attenuation_distance);
         const glm::dvec3 color = glm::max(glm::dvec3(model.attenuation_color), 1e-6);
         for (int i = 0; i < 3; ++i)
             light[i] *= portable::pow(color[i], lengths);
     }
-    return facets.passing * (1.0 - blocked) * light;
+    return term(context, ProbeTermKind::transmission, named("c T", facets.passing),
+                named("1 - f'", 1.0 - blocked), named("behind", light));
 }
 
 /// Returns the sums of light that a layer receives about a normal: sum_i L lobe(n.l, h).
+/// \param symbol  of the lobe
 template <typename Lobe>
-glm::dvec3 received(const Context& context, const glm::dvec3& normal, Lobe lobe) {
+TermSum received(const Context& context, const glm::dvec3& normal, ProbeTermKind kind,
+                 const char* symbol, Lobe lobe) {
     const Surface& at = context.surface;
-    glm::dvec3 sum(0.0);
+    TermSum sum;
     for (const Incoming& light : incoming_light(context, at)) {
         const double n_dot_l = glm::dot(normal, light.light_world);
         if (!adds_light(context, n_dot_l)) continue;
         const glm::dvec3 half = half_vector(light.light_world, at);
-        if (half != glm::dvec3(0.0)) sum += light.irradiance * lobe(n_dot_l, half);
+        if (half == glm::dvec3(0.0)) continue;
+        context.note("n.l", n_dot_l);
+        const double share = lobe(n_dot_l, half);
+        sum += {context.recorder(), kind, light.recorded, named("L", light.irradiance),
+                named(symbol, share)};
     }
     return sum;
 }
 
 /// Returns the term `sheened` of the formula.
-glm::dvec3 with_sheen(const Context& context, const glm::dvec3& base) {
+TermSum with_sheen(const Context& context, TermSum base) {
     const MetallicRoughness& model = *context.material.metallic_roughness;
     if (model.sheen_color == glm::vec3(0.0F)) return base;
     const glm::dvec3 color =
@@ -808,19 +630,27 @@ glm::dvec3 with_sheen(const Context& context, const glm::dvec3& base) {
         model.sheen_roughness_texture
             ? sheen_albedo(prepared.sheen_tables.at(model.sheen_roughness), n_dot_v, texel)
             : sheen_albedo(prepared.sheen_albedos.at(model.sheen_roughness), n_dot_v);
-    const glm::dvec3 lights = received(context, n, [&](double n_dot_l, const glm::dvec3& half) {
-        const double n_dot_h = std::clamp(glm::dot(n, half), 0.0, 1.0);
-        return std::numbers::pi * sheen_distribution(n_dot_h, alpha) *
-               sheen_visibility(n_dot_l, n_dot_v, alpha);
-    });
-    const glm::dvec3 around =
-        occlusion(context) * (ambient_of(context) + environment_irradiance(context));
+    TermSum sheen = received(context, n, ProbeTermKind::sheen_highlight, "n.l pi D' V'",
+                             [&](double n_dot_l, const glm::dvec3& half) {
+                                 const double n_dot_h = std::clamp(glm::dot(n, half), 0.0, 1.0);
+                                 context.note("n.h", n_dot_h);
+                                 context.note("alpha", alpha);
+                                 return std::numbers::pi * sheen_distribution(n_dot_h, alpha) *
+                                        sheen_visibility(n_dot_l, n_dot_v, alpha);
+                             });
+    TermSum around = term(context, ProbeTermKind::sheen_ambient, named("La", ambient_of(context)));
+    around += term(context, ProbeTermKind::sheen_environment,
+                   named("E(n)", environment_irradiance(context)));
+    around.multiply(named("occlusion", occlusion(context)));
+    sheen += around.multiply(named("E", albedo));
     const double largest = std::max({color.r, color.g, color.b});
-    return (1.0 - largest * albedo) * base + color * (lights + albedo * around);
+    base.multiply(named("1 - max(s) E", 1.0 - largest * albedo));
+    base += sheen.multiply(named("sheen color", color));
+    return base;
 }
 
 /// Returns the term `coated` of the formula.
-glm::dvec3 with_clearcoat(const Context& context, const glm::dvec3& base) {
+TermSum with_clearcoat(const Context& context, TermSum base) {
     const MetallicRoughness& model = *context.material.metallic_roughness;
     if (model.clearcoat == 0.0F) return base;
     const double weight =
@@ -832,37 +662,48 @@ glm::dvec3 with_clearcoat(const Context& context, const glm::dvec3& base) {
     at.normal_world = at.coat_normal_world;
     const Context plain{context.prepared, context.material, at, context.trace};
     const double n_dot_v = std::clamp(glm::dot(at.normal_world, at.view_world), 0.0, 1.0);
-    glm::dvec3 coat = received(plain, at.normal_world, [&](double n_dot_l, const glm::dvec3& half) {
-        return n_dot_l * ggx_lobe(at.normal_world, half, at, n_dot_l, roughness);
-    });
+    TermSum coat = received(plain, at.normal_world, ProbeTermKind::coat_highlight, "n'.l pi D V",
+                            [&](double n_dot_l, const glm::dvec3& half) {
+                                return n_dot_l * ggx_lobe(context, at.normal_world, half, at,
+                                                          n_dot_l, roughness);
+                            });
     // The weight is outside, so the coat's facets mirror all light in all bounces.
     const glm::dvec2 albedo = albedo_of(context, n_dot_v, roughness);
     const double once = albedo.x + albedo.y;
-    coat /= once;
-    glm::dvec3 around = ambient_of(context);
+    coat.divide("1 / (A + B)", once);
+    TermSum around = term(context, ProbeTermKind::coat_ambient, named("La", ambient_of(context)));
     if (context.prepared.environment) {
-        around += once * reflected(plain, at.normal_world, roughness) +
-                  (1.0 - once) * along_normal(plain, 1.0);
+        TermSum seen = term(context, ProbeTermKind::coat_reflection, named("A + B", once),
+                            named("R", reflected(plain, at.normal_world, roughness)));
+        seen += term(context, ProbeTermKind::coat_interreflection, named("1 - A - B", 1.0 - once),
+                     named("R", along_normal(plain, 1.0)));
+        around += std::move(seen);
     }
-    coat += occlusion(context) * around;
-    return glm::mix(base, coat, weight * (0.04 + 0.96 * portable::pow(1.0 - n_dot_v, 5.0)));
+    coat += around.multiply(named("occlusion", occlusion(context)));
+    const double share = weight * (0.04 + 0.96 * portable::pow(1.0 - n_dot_v, 5.0));
+    base.multiply(named("1 - w", 1.0 - share));
+    base += coat.multiply(named("w", share));
+    return base;
 }
 
-glm::dvec3 metallic_roughness_radiance(const Context& context, const Hit& hit,
-                                       const glm::dvec3& tint) {
+TermSum metallic_roughness_radiance(const Context& context, const Hit& hit,
+                                    const glm::dvec3& tint) {
     const Surface& at = context.surface;
     const Microfacets facets = microfacets_at(context, tint);
     decide_phase(context, facets);
-    glm::dvec3 radiance =
-        occlusion(context) * indirect_light(context, facets) + passing_light(context, facets, hit);
+    TermSum radiance = indirect_light(context, facets);
+    radiance.multiply(named("occlusion", occlusion(context)));
+    radiance += passing_light(context, facets, hit);
     const glm::dvec3 gain = highlight_gain(context, facets);
     for (const Incoming& light : incoming_light(context, at)) {
         const double n_dot_l = glm::dot(at.normal_world, light.light_world);
         if (!adds_light(context, n_dot_l)) continue;
-        radiance += light.irradiance * n_dot_l *
-                    scattered_by(context, facets, light.light_world, n_dot_l, gain);
+        radiance += scattered_by(context, facets, light, n_dot_l, gain)
+                        .multiply(named("L", light.irradiance), named("n.l", n_dot_l));
     }
-    return with_clearcoat(context, with_sheen(context, radiance) + emitted(context));
+    TermSum covered = with_sheen(context, std::move(radiance));
+    covered += emitted(context);
+    return with_clearcoat(context, std::move(covered));
 }
 
 }  // namespace
@@ -886,7 +727,10 @@ Shaded shade(const PreparedScene& prepared, const Hit& hit, const Material& mate
         const glm::vec3 color = material.metallic_roughness
                                     ? material.metallic_roughness->base_color
                                     : material.diffuse;
-        return {glm::dvec3(color) * tint, alpha};
+        return {term(context, ProbeTermKind::unlit,
+                     named(material.metallic_roughness ? "base color" : "kd", glm::dvec3(color)),
+                     named("tint", tint)),
+                alpha};
     }
     if (material.metallic_roughness)
         return {metallic_roughness_radiance(context, hit, tint), alpha};

@@ -528,6 +528,28 @@ void face_viewer(const PreparedScene& prepared, const Hit& hit, Surface& surface
                 surface.normal_world);
 }
 
+/// Records the vectors of a surface: those of the formula, and the frame of its tangent space, for
+/// which a mesh without stored tangents has the derivatives of its texture coordinates.
+void record(Recorder& recorder, const PreparedScene& prepared, const Hit& hit,
+            const Material& material, const Surface& surface) {
+    const Triangle triangle = triangle_of(prepared, hit);
+    const glm::dvec3 interpolated = triangle.interpolated(triangle.instance.normals_world);
+    Basis basis = basis_of(material, triangle, interpolated);
+    if (basis.tangent == glm::dvec3(0.0)) basis = derived_basis(triangle, interpolated);
+    ProbeLayer& layer = recorder.layer();
+    layer.position_world = surface.position_world;
+    if (surface.has_texcoord) layer.texcoord = surface.texcoord;
+    if (surface.has_texcoord_2) layer.texcoord_2 = surface.texcoord_2;
+    recorder.add_vector("n", surface.normal_world);
+    recorder.add_vector("v", surface.view_world);
+    if (coat_map(material)) recorder.add_vector("n'", surface.coat_normal_world);
+    recorder.add_vector("n0", unit_or(interpolated, z_axis));
+    recorder.add_vector("ng", front_of_plane(triangle));
+    if (basis.tangent == glm::dvec3(0.0)) return;
+    recorder.add_vector("t", direction_or_zero(basis.tangent));
+    recorder.add_vector("b", direction_or_zero(basis.bitangent));
+}
+
 }  // namespace
 
 bool is_back(const PreparedScene& prepared, const Hit& hit) {
@@ -551,6 +573,8 @@ Surface surface_at(const PreparedScene& prepared, const Hit& hit, const Material
         surface.bitangent_world = basis.bitangent;
     }
     face_viewer(prepared, hit, surface);
+    if (Recorder* const recorder = trace.recorder())
+        record(*recorder, prepared, hit, material, surface);
     return surface;
 }
 
