@@ -21,6 +21,7 @@
 namespace relief::tools {
 
 class Comparison;
+class ProbePanel;
 class SceneAccuracy;
 class ShaderPanel;
 
@@ -44,6 +45,7 @@ struct PanelInput {
     SceneAccuracy* accuracy = nullptr;
     Thumbnails* thumbnails = nullptr;
     shade::PictureExchange::Shown thumbnail_texture{};
+    ProbePanel* probe = nullptr;
 };
 
 /// The panels' requests to the window.

@@ -43,6 +43,7 @@ const std::vector<Shortcut>& shortcuts() {
         {Action::compare, "K", "Start or stop the comparison"},
         {Action::swap_sides, "X", "Swap the two sides"},
         {Action::show_difference, "D", "Show the difference or both sides"},
+        {Action::pixel_probe, "I", "Explain the pixel under the pointer, or stop"},
         {Action::undo, "Ctrl+Z", "Undo the last edit"},
         {Action::redo, "Ctrl+Y", "Redo the edit that was undone"},
         {Action::redo, "Ctrl+Shift+Z", "Redo the edit that was undone"},
@@ -77,6 +78,7 @@ const std::vector<Gesture>& gestures() {
         {"Ctrl+drag", "Rotate the lights"},
         {"Ctrl+Shift+drag", "Rotate the environment"},
         {"Drag the line", "Move the line between two compared pictures"},
+        {"Click, while pixels are explained", "Pin the pixel, or follow the pointer again"},
         {"Double click", "Set the orbit center to this point"},
         {"Drop a file", "Show a model, or apply a map"},
     };

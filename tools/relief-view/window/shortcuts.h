@@ -45,6 +45,7 @@ enum class Action {
     compare,
     swap_sides,
     show_difference,
+    pixel_probe,
     undo,
     redo,
     copy_camera,

@@ -159,6 +159,7 @@ ImGuiStyle style_of(bool is_light) {
 constexpr ImU32 backdrop = IM_COL32(24, 26, 30, 255);
 constexpr double double_click_seconds = 0.35;
 constexpr float double_click_reach = 6.0F;  // In window units.
+constexpr float click_reach = 3.0F;         // A longer way is a drag.
 constexpr float line_reach = 6.0F;          // For the line between two pictures.
 constexpr float drag_zoom = 0.02F;          // Wheel steps per pixel of a right drag.
 constexpr float wheel_pan = 40.0F;          // Window units per wheel step.
@@ -324,7 +325,8 @@ bool UserInterface::is_on_picture() const {
     glfwGetWindowSize(system_.window(), &width, &height);
     const bool is_over = pointer_.x >= left_ && pointer_.x < static_cast<float>(width) &&
                          pointer_.y >= 0.0F && pointer_.y < static_cast<float>(height) - bottom_;
-    return is_over && !is_help_open_ && !ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
+    return is_over && !covered_.contains(pointer_) && !is_help_open_ &&
+           !ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
 }
 
 bool UserInterface::is_on_line() const {
@@ -344,11 +346,15 @@ bool UserInterface::is_second_click() {
 void UserInterface::on_button(int button, bool is_down, int modifiers) {
     drag_ = Drag::none;
     has_release_ |= !is_down;
+    if (!is_down && pressed_at_ && glm::distance(*pressed_at_, pointer_) < click_reach)
+        released_ = pointer_;
+    pressed_at_.reset();
     if (!is_down || !is_on_picture()) return;
     if (button == GLFW_MOUSE_BUTTON_LEFT && is_on_line()) {
         drag_ = Drag::line;
         return;
     }
+    if (button == GLFW_MOUSE_BUTTON_LEFT && modifiers == 0) pressed_at_ = pointer_;
     if (button == GLFW_MOUSE_BUTTON_LEFT && modifiers == 0 && is_second_click())
         moves_.push_back({Drag::aim, {}, 0.0F, pointer_});
     if (button == GLFW_MOUSE_BUTTON_RIGHT) {
@@ -388,6 +394,16 @@ glm::vec2 UserInterface::on_view(const glm::vec2& place, const ViewerState& stat
     const glm::vec2 offset = (place - middle) * vec(io.DisplayFramebufferScale);
     return glm::vec2(offset.x, -offset.y) /
            (0.5F * static_cast<float>(std::max(state.view().y, 1)));
+}
+
+/// The pixel of the picture at a place of the window; none beside the picture.
+std::optional<glm::ivec2> UserInterface::pixel_at(const glm::vec2& place,
+                                                  const ViewerState& state) const {
+    const glm::vec2 offset = place - glm::vec2(left_, 0.0F);
+    const glm::ivec2 pixel(glm::floor(offset * vec(ImGui::GetIO().DisplayFramebufferScale)));
+    const bool is_inside = pixel.x >= 0 && pixel.y >= 0 && pixel.x < state.view().x &&
+                           pixel.y < state.view().y && !covered_.contains(place);
+    return is_inside ? std::optional(pixel) : std::nullopt;
 }
 
 void UserInterface::apply(const Move& move, ViewerState& state) const {
@@ -451,6 +467,12 @@ UserInterface::Events UserInterface::draw(const PanelInput& input,
     const ViewPlace place{{left_, 0.0F}, {io.DisplaySize.x, io.DisplaySize.y - bottom_}};
     draw_view(input, picture, place);
     if (picture.texture != 0 && !input.layout.has_seen_hint) draw_hint(place);
+    events.pixel = pixel_at(pointer_, input.state);
+    if (released_) events.clicked = pixel_at(*released_, input.state);
+    released_.reset();
+    covered_ = input.probe == nullptr
+                   ? WindowArea{}
+                   : input.probe->draw(place, input.thumbnails, input.thumbnail_texture);
     for (const Move& move : std::exchange(moves_, {})) {
         if (move.drag == Drag::line)
             input.comparison->set_split((move.place.x - left_) / std::max(size.x, 1.0F));

@@ -11,16 +11,14 @@
 
 #include "relief/shade/renderer.h"
 #include "window/panels.h"
+#include "window/probe_panel.h"
 #include "window/shortcuts.h"
 #include "window/window_system.h"
 
 namespace relief::tools {
 
-/// The rectangle of the view, in the units of the user interface.
-struct ViewPlace {
-    glm::vec2 min{0.0F};
-    glm::vec2 max{0.0F};
-};
+/// The rectangle of the view.
+using ViewPlace = WindowArea;
 
 class UserInterface {
   public:
@@ -34,6 +32,8 @@ class UserInterface {
         std::vector<Action> actions;  ///< In the order of the key presses.
         std::vector<std::filesystem::path> dropped;
         PanelRequests panels;
+        std::optional<glm::ivec2> pixel;    ///< Of the picture, under the pointer.
+        std::optional<glm::ivec2> clicked;  ///< A pixel that was clicked without a drag.
         bool has_input = false;  ///< A key, the mouse or a drop. Dear ImGui then needs more frames.
     };
 
@@ -80,6 +80,8 @@ class UserInterface {
     [[nodiscard]] glm::vec2 on_view(const glm::vec2& place, const ViewerState& state) const;
     void apply(const Move& move, ViewerState& state) const;
     [[nodiscard]] bool is_on_line() const;
+    [[nodiscard]] std::optional<glm::ivec2> pixel_at(const glm::vec2& place,
+                                                     const ViewerState& state) const;
     void draw_view(const PanelInput& input, const shade::PictureExchange::Shown& picture,
                    const ViewPlace& place);
 
@@ -93,6 +95,9 @@ class UserInterface {
     glm::vec2 pointer_{0.0F};   ///< In window units.
     glm::vec2 clicked_{-1e6F};  ///< Position of the last click.
     double clicked_at_ = -1e9;
+    std::optional<glm::vec2> pressed_at_;  ///< Where the left button went down on the picture.
+    std::optional<glm::vec2> released_;    ///< Where it was released without a drag.
+    WindowArea covered_;                   ///< The part of the picture under the probe's panel.
     bool is_help_open_ = false;
     UiScale scale_{.layout = 0.0F, .glyphs = 0.0F};  ///< Not set yet.
     UiScale wanted_scale_;

@@ -30,6 +30,7 @@
 #include "window/controls.h"
 #include "window/input_files.h"
 #include "window/panels.h"
+#include "window/probe_panel.h"
 #include "window/scene_accuracy.h"
 #include "window/shader_panel.h"
 #include "window/user_interface.h"
@@ -73,6 +74,7 @@ class WindowLoop {
           comparison_(options.compare, WindowSystem::wake),
           accuracy_(WindowSystem::wake),
           saving_(WindowSystem::wake),
+          probe_(WindowSystem::wake),
           loading_options_(options),
           ui_scale_(options.ui_scale),
           state_file_(options.dump_state) {
@@ -168,7 +170,7 @@ class WindowLoop {
     bool is_working() {
         return loader_.is_loading() || drawer_.is_busy() || accuracy_.is_measuring() ||
                effect_times_.state().is_running || captured_->state().is_running() ||
-               saving_.is_running() || shaders_.edits().is_pending() ||
+               saving_.is_running() || probe_.is_working() || shaders_.edits().is_pending() ||
                shaders_.exercise_check().is_working();
     }
 
@@ -204,12 +206,16 @@ class WindowLoop {
                                &comparison_,
                                &accuracy_,
                                &thumbnails_,
-                               drawer_.thumbnails()};
+                               drawer_.thumbnails(),
+                               &probe_};
         const UserInterface::Events events = interface_.draw(input, drawer_.shown());
         if (state_.has_scene()) thumbnails_.update(state_.scene());
         // Input may arrive while the panels settle after earlier input.
         if (events.has_input) pending_frames_ = frames_to_settle;
         if (events.panels.cancel_loading) loader_.cancel();
+        if (events.clicked) probe_.click(*events.clicked);
+        if (std::optional<DrawTask> task = probe_.follow(state_.request(), events.pixel))
+            drawer_.add(std::move(*task));
         for (const Action action : events.actions)
             act(action);
         if (const auto view = std::exchange(requested_view_size_, std::nullopt))
@@ -227,7 +233,8 @@ class WindowLoop {
         const bool is_busy = request_picture() || was_busy || is_full_resolution_pending_ ||
                              health_.is_running() || thumbnails_.is_running();
         write_state(drawn, is_busy || accuracy_.is_working() || comparison_.is_working() ||
-                               saving_.is_running() || shaders_.edits().is_pending() ||
+                               saving_.is_running() || probe_.is_working() ||
+                               shaders_.edits().is_pending() ||
                                shaders_.exercise_check().is_working());
     }
 
@@ -250,6 +257,7 @@ class WindowLoop {
         if (action == Action::copy_camera)
             glfwSetClipboardString(system_.window(), command_line().c_str());
         if (action == Action::compare) comparison_.toggle();
+        if (action == Action::pixel_probe) probe_.toggle();
         if (action == Action::swap_sides) comparison_.swap();
         if (action == Action::show_difference) comparison_.toggle_difference();
         if (action == Action::paste_camera) paste();
@@ -445,6 +453,7 @@ class WindowLoop {
         state["accuracy"] = accuracy_.json(state_.options());
         state["drawn"]["beside"] = drawn.beside;
         state["drawn"]["difference"] = drawn.is_difference;
+        state["probe"] = probe_.json();
         state["saved"] = json_of(captured_->state());
         state["notice"] = notice_;
         state["saved_files"] = saving_.json();
@@ -476,6 +485,7 @@ class WindowLoop {
     Comparison comparison_;
     SceneAccuracy accuracy_;
     Saving saving_;
+    ProbePanel probe_;
     ViewOptions loading_options_;  ///< Options of the last read.
     /// The view size from the command line, until the first frame is drawn.
     std::optional<glm::ivec2> requested_view_size_;
