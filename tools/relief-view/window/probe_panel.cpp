@@ -277,9 +277,9 @@ void draw_vectors(const ProbeLayer& layer) {
     ImGui::EndTable();
 }
 
-/// Draws the vectors of the first surface as a table; other sections are lines.
-void draw_sections(const ProbedPixel& pixel, const Scene& scene, Thumbnails* images,
-                   const PictureExchange::Shown& texture) {
+/// Draws the vectors of each surface as a table; other sections are lines, wrapped at a width.
+void draw_sections(const ProbedPixel& pixel, const Scene& scene, float wrap_width,
+                   Thumbnails* images, const PictureExchange::Shown& texture) {
     std::size_t layer = 0;
     for (const ProbeSection& section : probe_sections(pixel, scene)) {
         ImGui::TextDisabled("%s", section.label.c_str());
@@ -292,8 +292,10 @@ void draw_sections(const ProbedPixel& pixel, const Scene& scene, Thumbnails* ima
             ImGui::PopID();
             continue;
         }
+        ImGui::PushTextWrapPos(wrap_width);
         for (const std::string& line : section.lines)
             ImGui::TextUnformatted(line.c_str());
+        ImGui::PopTextWrapPos();
         if (section.label != "textures" || images == nullptr || layer == 0) continue;
         images->want();
         bool is_first = true;
@@ -316,7 +318,7 @@ WindowArea ProbePanel::draw(const WindowArea& picture, Thumbnails* images,
                     picture);
     }
     const float margin = ImGui::GetFontSize();
-    const float width = std::min(40.0F * ImGui::GetFontSize(), 0.5F * size.x);
+    const float width = std::min(44.0F * ImGui::GetFontSize(), 0.55F * size.x);
     ImGui::SetNextWindowPos({picture.max.x - width - margin, picture.min.y + margin});
     ImGui::SetNextWindowSizeConstraints({width, 0.0F}, {width, size.y - 2.0F * margin});
     ImGui::SetNextWindowBgAlpha(0.92F);
@@ -332,7 +334,8 @@ WindowArea ProbePanel::draw(const WindowArea& picture, Thumbnails* images,
     } else {
         ImGui::TextDisabled("%s", pinned_ ? "pinned; a click follows the pointer again"
                                           : "a click pins the pixel and draws its shader's value");
-        draw_sections(result_->pixel, result_->prepared->scene, images, image_texture);
+        draw_sections(result_->pixel, result_->prepared->scene,
+                      width - ImGui::GetStyle().WindowPadding.x, images, image_texture);
     }
     const ImVec2 corner = ImGui::GetWindowPos();
     const ImVec2 extent = ImGui::GetWindowSize();
