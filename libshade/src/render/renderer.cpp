@@ -229,7 +229,7 @@ struct Renderer::Implementation {
     void prepare_meshes(const Scene& scene, Report& report);
     void check_meshes(const Scene& scene) const;
     void replace_meshes(const Scene& scene);
-    void prepare_draws(const Scene& scene);
+    void prepare_draws(const Scene& scene, ProgressStage& stage);
     Surface prepare_surface(const Scene& scene, const Planned& p);
     Draw prepare_draw(const Scene& scene, std::size_t planned_draw);
     void follow_poses(const Scene& scene);
@@ -317,9 +317,9 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
                        environment->blurred_levels());
     }
     {
-        const ProgressStage stage("programs");
+        ProgressStage stage("programs", plan.draws.size());
         prepare_shadow(scene);
-        prepare_draws(scene);
+        prepare_draws(scene, stage);
     }
     if (settings.overlays.any()) {
         overlays = std::make_unique<OverlayDrawing>(api, linked, scene, plan, settings, report);
@@ -394,7 +394,7 @@ std::shared_ptr<SortedTriangles> Renderer::Implementation::sorted_triangles(cons
     return at_rest;
 }
 
-void Renderer::Implementation::prepare_draws(const Scene& scene) {
+void Renderer::Implementation::prepare_draws(const Scene& scene, ProgressStage& stage) {
     draws.reserve(plan.draws.size());
     for (std::size_t i = 0; i < plan.draws.size(); ++i) {
         if (plan.draws[i].range.triangle_count == 0) continue;
@@ -402,6 +402,7 @@ void Renderer::Implementation::prepare_draws(const Scene& scene) {
         lights.add(api, scene, plan.draws[i].features);
         triangle_total += plan.draws[i].range.triangle_count;
         draws.push_back(prepare_draw(scene, i));
+        stage.advance(1);
     }
     // Adjacent draws with the same program need no program change. The depth buffer hides the
     // order.

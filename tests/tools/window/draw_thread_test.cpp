@@ -24,37 +24,97 @@ using testing::HasSubstr;
 
 const FrameSettings whole{1200, 800, 4};
 
-TEST(AdaptiveResolution, FastPicturesKeepTheirResolution) {
-    AdaptiveResolution resolution;
-    resolution.note_motion(5.0);
-    EXPECT_EQ(resolution.settings_for(whole, 5.0).width, 1200) << "nothing is known yet";
-    resolution.set_full_time(60.0);
-    EXPECT_EQ(resolution.settings_for(whole, 5.0).width, 1200);
-    EXPECT_EQ(resolution.settings_for(whole, 5.0).samples, 4);
+class Resolution : public testing::Test {
+  protected:
+    /// Notes the time of a picture at full resolution that is not the first one.
+    void measure(double milliseconds) {
+        resolution_.note_picture(whole, whole, milliseconds, false);
+    }
+    FrameSettings next(double now, const FrameSettings& last = whole, bool is_idle = true) {
+        return resolution_.next_settings(whole, last, is_idle, now);
+    }
+    void expect(const FrameSettings& settings, int width, int height, int samples) {
+        EXPECT_EQ(settings.width, width);
+        EXPECT_EQ(settings.height, height);
+        EXPECT_EQ(settings.samples, samples);
+    }
+    AdaptiveResolution& resolution() { return resolution_; }
+
+  private:
+    AdaptiveResolution resolution_;
+};
+
+TEST_F(Resolution, FastPicturesKeepIt) {
+    resolution().note_motion(5.0);
+    expect(next(5.0), 1200, 800, 4);
+    measure(60.0);
+    expect(next(5.0), 1200, 800, 4);
 }
 
-TEST(AdaptiveResolution, SlowPicturesReduceSamplesThenPixels) {
-    AdaptiveResolution resolution;
-    resolution.note_motion(5.0);
-    resolution.set_full_time(100.0);
-    EXPECT_EQ(resolution.settings_for(whole, 5.0).samples, 1);
-    EXPECT_EQ(resolution.settings_for(whole, 5.0).width, 1200);
-    // This is 167 ms with one sample, and a quarter of that is below 60 ms.
-    resolution.set_full_time(400.0);
-    EXPECT_EQ(resolution.settings_for(whole, 5.0).width, 600);
-    EXPECT_EQ(resolution.settings_for(whole, 5.0).height, 400);
-    resolution.set_full_time(1e6);
-    EXPECT_EQ(resolution.settings_for(whole, 5.0).width, 300) << "never coarser than that";
-    EXPECT_EQ(resolution.settings_for({2, 1, 1}, 5.0).height, 1);
+TEST_F(Resolution, SlowPicturesAreHalfAsLargeWhileMoving) {
+    resolution().note_motion(5.0);
+    measure(100.0);  // 56 ms for three quarters.
+    expect(next(5.0), 900, 600, 4);
+    measure(150.0);  // 38 ms for a half.
+    expect(next(5.0), 600, 400, 4);
+    measure(400.0);
+    expect(next(5.0), 600, 400, 4);
+    measure(900.0);  // 94 ms for a half with one sample.
+    expect(next(5.0), 600, 400, 1);
+    measure(1e6);
+    expect(next(5.0), 400, 266, 1);
+    const FrameSettings tiny = resolution().next_settings({2, 1, 1}, {2, 1, 1}, true, 5.0);
+    EXPECT_EQ(tiny.height, 1);
 }
 
-TEST(AdaptiveResolution, FullResolutionReturnsAfterMotion) {
-    AdaptiveResolution resolution;
-    resolution.set_full_time(400.0);
-    EXPECT_EQ(resolution.settings_for(whole, 5.0).width, 1200) << "nothing has moved yet";
-    resolution.note_motion(5.0);
-    EXPECT_EQ(resolution.settings_for(whole, 5.1).width, 600);
-    EXPECT_EQ(resolution.settings_for(whole, 5.2).width, 1200);
+TEST_F(Resolution, FirstPictureOfASceneDoesNotCount) {
+    // The driver compiles for it.
+    resolution().note_motion(5.0);
+    resolution().note_picture(whole, whole, 230.0, true);
+    expect(next(5.0), 1200, 800, 4);
+    resolution().note_picture(whole, whole, 800.0, true);
+    expect(next(5.0), 600, 400, 4);
+    measure(40.0);
+    expect(next(5.0), 1200, 800, 4);
+    resolution().note_picture(whole, whole, 800.0, true);
+    expect(next(5.0), 1200, 800, 4);
+    FrameSettings half = whole;
+    half.width = 600;
+    resolution().note_picture(half, whole, 500.0, false);
+    expect(next(5.0), 1200, 800, 4);
+}
+
+TEST_F(Resolution, FullPictureIsThereAFifthOfASecondAfterMotion) {
+    for (const double milliseconds : {70.0, 100.0, 145.0}) {
+        measure(milliseconds);
+        resolution().note_motion(5.0);
+        const double rest = resolution().seconds_until_rest(5.0);
+        EXPECT_LE(rest + 1e-3 * milliseconds, AdaptiveResolution::seconds_to_full + 1e-9);
+        EXPECT_GE(rest, 0.05) << "steps of a wheel are one motion";
+        EXPECT_LT(next(5.0 + 0.9 * rest).width, 1200);
+        expect(next(5.0 + 1.01 * rest), 1200, 800, 4);
+    }
+}
+
+TEST_F(Resolution, ReleaseEndsMotionAtOnce) {
+    measure(150.0);
+    resolution().note_motion(5.0);
+    EXPECT_EQ(next(5.0).width, 600);
+    resolution().end_motion();
+    EXPECT_EQ(resolution().seconds_until_rest(5.0), 0.0);
+    expect(next(5.0), 1200, 800, 4);
+}
+
+TEST_F(Resolution, VerySlowPicturesComeFirstWithOneSample) {
+    measure(400.0);
+    resolution().note_motion(5.0);
+    const FrameSettings moving = next(5.0);
+    resolution().end_motion();
+    const FrameSettings first = next(5.0, moving);
+    expect(first, 1200, 800, 1);
+    expect(next(5.1, first, false), 1200, 800, 1);
+    expect(next(5.2, first, true), 1200, 800, 4);
+    expect(next(5.3, whole, true), 1200, 800, 4);
 }
 
 /// The loader must be a plain function pointer.

@@ -211,9 +211,71 @@ TEST_F(MapSlots, DependOnTheMaterialModel) {
     EXPECT_FALSE(is_map_used(metallic, slot_named("Specular map")));
     EXPECT_TRUE(is_map_used(metallic, slot_named("Metallic-roughness map")));
     EXPECT_FALSE(is_map_used(phong, slot_named("Metallic-roughness map")));
-    EXPECT_FALSE(is_map_used(metallic, slot_named("Clearcoat map"))) << "it is not there";
+    EXPECT_TRUE(is_map_used(metallic, slot_named("Clearcoat map")));
+    EXPECT_FALSE(is_map_used(phong, slot_named("Clearcoat map")));
     EXPECT_FALSE(is_map_used(unlit, slot_named("Normal map")));
     EXPECT_TRUE(is_map_used(unlit, slot_named("Diffuse map")));
+}
+
+std::vector<std::string> titles_with_effect(const Material& material) {
+    std::vector<std::string> titles;
+    for (const MaterialGroup& group : material_groups(material)) {
+        if (group.has_effect && !group.title.empty()) titles.push_back(group.title);
+    }
+    return titles;
+}
+
+TEST(MaterialGroups, OfAPlainMaterialHaveNoEffect) {
+    Material metallic;
+    metallic.metallic_roughness.emplace();
+    Material unlit;
+    unlit.unlit = true;
+    for (const Material& material : {Material(), metallic, unlit})
+        EXPECT_THAT(titles_with_effect(material), testing::IsEmpty());
+    EXPECT_EQ(material_groups(metallic).size(), 14U) << "9 extensions, 4 others and the base";
+    EXPECT_EQ(material_groups(unlit).size(), 2U);
+}
+
+TEST(MaterialGroups, HaveAnEffectIfTheirValuesChangeThePicture) {
+    Material phong;
+    phong.specular = glm::vec3(0.5F);
+    phong.transmission = 0.1F;
+    phong.bump_map.emplace();
+    phong.emission = glm::vec3(1.0F);
+    phong.alpha_mode = AlphaMode::blend;
+    EXPECT_THAT(
+        titles_with_effect(phong),
+        testing::ElementsAre("Highlights", "Reflection", "Relief", "Emission", "Transparency"));
+    Material metallic;
+    MetallicRoughness& model = metallic.metallic_roughness.emplace();
+    model.clearcoat_roughness = 0.5F;
+    model.sheen_roughness = 0.5F;
+    model.anisotropy_rotation = 1.0F;
+    model.thickness = 1.0F;
+    model.dispersion = 1.0F;
+    EXPECT_THAT(titles_with_effect(metallic), testing::IsEmpty()) << "their weights are 0";
+    model.refractive_index = 1.3F;
+    model.specular_color_texture.emplace();
+    model.clearcoat = 1.0F;
+    model.transmission = 1.0F;
+    EXPECT_THAT(titles_with_effect(metallic),
+                testing::ElementsAre("Refraction", "Specular", "Clearcoat", "Transmission",
+                                     "Volume", "Dispersion"));
+}
+
+TEST(MaterialGroups, ContainEveryMapOnce) {
+    Material metallic;
+    metallic.metallic_roughness.emplace();
+    for (const Material& material : {Material(), metallic}) {
+        std::vector<TextureSlot> slots;
+        for (const MaterialGroup& group : material_groups(material))
+            slots.insert(slots.end(), group.slots.begin(), group.slots.end());
+        for (const TextureSlotInfo& info : texture_slots) {
+            EXPECT_EQ(std::count(slots.begin(), slots.end(), info.slot),
+                      is_map_used(material, info.slot) ? 1 : 0)
+                << info.name;
+        }
+    }
 }
 
 }  // namespace

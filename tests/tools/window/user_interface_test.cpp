@@ -44,12 +44,33 @@ TEST(Shortcuts, EveryActionHasAKey) {
     EXPECT_EQ(actions.size(), static_cast<std::size_t>(Action::quit) + 1);
 }
 
-TEST(Shortcuts, AreListedOnePerLine) {
+TEST(Shortcuts, EveryGroupHasSome) {
+    std::set<std::string_view> used = {gesture_group};
+    for (const Shortcut& shortcut : shortcuts())
+        used.insert(shortcut_group(shortcut.action));
+    const std::vector<std::string_view> groups = shortcut_groups();
+    EXPECT_EQ(used, std::set<std::string_view>(groups.begin(), groups.end()));
+    EXPECT_EQ(shortcut_group(Action::wireframe), "Picture");
+    EXPECT_EQ(shortcut_group(Action::cancel), "Window");
+}
+
+TEST(Shortcuts, AreSearchedByAllWords) {
+    EXPECT_TRUE(matches_search("", {"anything"}));
+    EXPECT_TRUE(matches_search("  ", {}));
+    EXPECT_TRUE(matches_search("Camera FIT", {"camera", "F", "Fit the model"}));
+    EXPECT_FALSE(matches_search("camera fox", {"Camera", "F", "Fit the model"}));
+    EXPECT_FALSE(matches_search("ab", {"a", "b"})) << "a word is in one text";
+}
+
+TEST(Shortcuts, AreListedByGroupOnePerLine) {
     const std::string text = shortcuts_text();
     const auto lines = std::count(text.begin(), text.end(), '\n');
-    EXPECT_EQ(static_cast<std::size_t>(lines), shortcuts().size() + gestures().size());
-    EXPECT_EQ(text.substr(0, text.find('\n')),
-              "F                               Fit the model to the view");
+    // A heading and an empty line for each group.
+    const std::size_t headings = 2 * shortcut_groups().size() - 1;
+    EXPECT_EQ(static_cast<std::size_t>(lines), shortcuts().size() + gestures().size() + headings);
+    EXPECT_THAT(text, testing::StartsWith(
+                          "Camera\n  F                               Fit the model to the view\n"));
+    EXPECT_THAT(text, HasSubstr("\n\nMouse\n  Drag  "));
 }
 
 TEST(StatusLine, ShowsWhatFitsFromTheFirstPartOn) {
@@ -174,14 +195,14 @@ class Interface : public testing::Test {
         EXPECT_EQ(workplace_.read("state/relief/relief-view.json"), R"({"version": 9})");
     }
 
-    void expect_twice_the_size_without_a_file(const json& usual) {
-        const auto window = open(" --ui-scale 2 --no-state", "untouched");
+    void expect_a_larger_scale_without_a_file(const json& usual) {
+        const auto window = open(" --ui-scale 1.5 --no-state", "untouched");
         const json state = window->wait_for_rest();
-        EXPECT_EQ(state["layout"]["scale"], 2.0);
-        EXPECT_EQ(panel_width(state), 2 * panel_width(usual));
+        EXPECT_EQ(state["layout"]["scale"], 1.5);
+        EXPECT_EQ(panel_width(state), panel_width(usual) * 3 / 2);
         for (std::size_t i = 0; i < 2; ++i) {
             EXPECT_NEAR(state["places"]["Scene"][i].get<double>(),
-                        2.0 * usual["places"]["Scene"][i].get<double>(), 2.0);
+                        1.5 * usual["places"]["Scene"][i].get<double>(), 2.0);
         }
         window->click_on("Lights");
         window->wait_for("the panel", [](const json& now) {
@@ -190,7 +211,7 @@ class Interface : public testing::Test {
         });
         window->key("ctrl+minus");
         window->wait_for("a smaller one",
-                         [](const json& now) { return now["layout"]["scale"] == 1.75; });
+                         [](const json& now) { return now["layout"]["scale"] == 1.25; });
         window->key("ctrl+0");
         window->wait_for("the screen's", [&](const json& now) {
             return now["layout"]["scale"] == 1.0 && panel_width(now) == panel_width(usual);
@@ -210,7 +231,7 @@ TEST_F(Interface, LayoutAndScaleAreSavedUnlessNoStateIsGiven) {
     const json usual = leave_a_changed_window();
     expect_remembered();
     expect_that_a_newer_file_is_kept();
-    expect_twice_the_size_without_a_file(usual);
+    expect_a_larger_scale_without_a_file(usual);
 }
 
 /// A window with one open panel at a time, so that the whole panel is visible.
@@ -353,7 +374,9 @@ TEST_F(Panel, MaterialsTakeMapsAndChangeTheirModel) {
     RELIEF_NEEDS_PANELS("data/vase.obj");
     open_panel("Materials");
     window().wait_for("the only material, unfolded",
-                      [](const json& now) { return now["places"].contains("Bump map"); });
+                      [](const json& now) { return now["places"].contains("group Relief"); });
+    EXPECT_FALSE(window().state()["places"].contains("Bump map")) << "the group has no effect";
+    window().click_on("group Relief");
     const auto has = [](const char* effect) {
         return [effect](const json& now) { return has_effect(now, effect); };
     };

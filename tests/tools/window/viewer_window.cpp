@@ -17,10 +17,10 @@ namespace relief::test {
 ViewerWindow::ViewerWindow(const Display& display, const Workplace& workplace,
                            const std::string& words, const std::string& environment)
     : display_(display) {
-    // The hint of the first run would cover a part of the picture.
+    // The hint of the first run and the axes would cover a part of the picture.
     std::filesystem::create_directories(streams_ / "xdg/relief");
     std::ofstream(streams_ / "xdg/relief/relief-view.json")
-        << R"({"version": 1, "hint_seen": true})";
+        << R"({"version": 1, "hint_seen": true, "axes": false})";
     // exec replaces the shell, so that the processor time of the program can be measured.
     // LeakSanitizer is off, because Mesa's driver is unloaded before its leaks can be symbolized.
     const std::string line = fmt::format(

@@ -100,7 +100,9 @@ TEST_F(Layout, IsReadBack) {
                               .ui_scale = 1.25F,
                               .has_light_theme = true,
                               .has_seen_hint = true,
-                              .recent_files = {"/b.glb", "/a.obj"}};
+                              .has_axes = false,
+                              .recent_files = {"/b.glb", "/a.obj"},
+                              .recent_images = {"/wood.png"}};
     SavedLayout first(file());
     EXPECT_EQ(first.note(), "");
     EXPECT_EQ(first.layout(), WindowLayout());
@@ -131,6 +133,14 @@ TEST(RecentFiles, AreTheLastTenWithoutRepetition) {
     EXPECT_EQ(layout.recent_files[9], "/models/2.obj");
     EXPECT_EQ(std::count(layout.recent_files.begin(), layout.recent_files.end(), "/models/5.obj"),
               1);
+}
+
+TEST(RecentFiles, OfImagesAreAListOfTheirOwn) {
+    WindowLayout layout;
+    remember_image(layout, "/maps/a.png");
+    remember_image(layout, "/maps/b.png");
+    EXPECT_THAT(layout.recent_images, ElementsAre("/maps/b.png", "/maps/a.png"));
+    EXPECT_TRUE(layout.recent_files.empty());
 }
 
 TEST_F(Layout, IsWrittenOnlyIfItChanged) {

@@ -313,7 +313,9 @@ TEST_F(Window, SlowPicturesAreReducedDuringMotionAndMeasuringCanBeStopped) {
     if (before["drawn"]["milliseconds"] < 80.0) GTEST_SKIP() << "too quick a machine";
     window().key("space");
     ASSERT_TRUE(eventually([&] { return window().state()["drawn"]["whole"] == false; }));
-    EXPECT_EQ(window().state()["drawn"]["samples"], 1);
+    const json moving = window().state();
+    EXPECT_GE(3 * moving["drawn"]["size"][0].get<int>() + 3, moving["view"][0].get<int>())
+        << "never less than a third";
     window().key("space");
     const json after = window().wait_for("rest", [](const json& now) { return !now["turntable"]; });
     EXPECT_EQ(after["drawn"]["whole"], true);

@@ -193,19 +193,63 @@ std::optional<Thumbnails::Place> Thumbnails::place_of(std::size_t image) const {
 namespace {
 
 constexpr double cost_of_samples = 2.4;  // Measured ratio of 4 samples to 1 in software.
-constexpr int coarsest = 4;
+/// The estimated time of the second picture of a scene, as a share of that of the first, for which
+/// the driver has compiled.
+constexpr double share_of_drawing = 0.25;
+
+bool have_same_size(const FrameSettings& a, const FrameSettings& b) {
+    return a.width == b.width && a.height == b.height;
+}
+
+FrameSettings scaled(FrameSettings settings, int numerator, int denominator) {
+    settings.width = std::max(settings.width * numerator / denominator, 1);
+    settings.height = std::max(settings.height * numerator / denominator, 1);
+    return settings;
+}
 
 }  // namespace
 
-FrameSettings AdaptiveResolution::settings_for(FrameSettings full, double now) const {
-    if (milliseconds_ <= max_milliseconds || now - last_move_ >= idle_seconds) return full;
+void AdaptiveResolution::note_picture(const FrameSettings& drawn, const FrameSettings& full,
+                                      double milliseconds, bool is_first) {
+    const bool is_full = have_same_size(drawn, full) && drawn.samples == full.samples;
+    if (is_full && !is_first) {
+        milliseconds_ = milliseconds;
+        is_measured_ = true;
+    } else if (is_full && !is_measured_) {
+        milliseconds_ = share_of_drawing * milliseconds;
+    }
+}
+
+double AdaptiveResolution::idle_seconds() const {
+    constexpr double shortest = 0.05;  // Two steps of a wheel are not much farther apart.
+    constexpr double longest = 0.15;
+    return std::clamp(seconds_to_full - 1e-3 * milliseconds_, shortest, longest);
+}
+
+double AdaptiveResolution::seconds_until_rest(double now) const {
+    return std::max(last_move_ + idle_seconds() - now, 0.0);
+}
+
+FrameSettings AdaptiveResolution::moving_settings(FrameSettings full) const {
+    if (milliseconds_ <= max_milliseconds) return full;
+    if (9.0 / 16.0 * milliseconds_ <= max_milliseconds) return scaled(full, 3, 4);
+    if (milliseconds_ / 4.0 <= max_coarse_milliseconds) return scaled(full, 1, 2);
     const double of_one_sample = full.samples > 1 ? milliseconds_ / cost_of_samples : milliseconds_;
-    const double divisor = std::ceil(std::sqrt(of_one_sample / max_milliseconds));
-    const int n = static_cast<int>(std::clamp(divisor, 1.0, static_cast<double>(coarsest)));
     full.samples = 1;
-    full.width = std::max(full.width / n, 1);
-    full.height = std::max(full.height / n, 1);
-    return full;
+    return of_one_sample / 4.0 <= max_coarse_milliseconds ? scaled(full, 1, 2) : scaled(full, 1, 3);
+}
+
+FrameSettings AdaptiveResolution::next_settings(const FrameSettings& full,
+                                                const FrameSettings& last, bool is_idle,
+                                                double now) const {
+    if (seconds_until_rest(now) > 0.0) return moving_settings(full);
+    constexpr double latency = 0.05;
+    if (1e-3 * milliseconds_ <= seconds_to_full - latency || full.samples <= 1) return full;
+    FrameSettings first = full;
+    first.samples = 1;
+    if (last.width < full.width) return first;
+    const bool is_waiting = have_same_size(last, first) && last.samples == 1 && !is_idle;
+    return is_waiting ? first : full;
 }
 
 FramePlan forced_plan(const Scene& scene, const FrameSettings& settings,
@@ -217,11 +261,16 @@ FramePlan forced_plan(const Scene& scene, const FrameSettings& settings,
 class DrawThread::Drawer {
   public:
     Drawer(GlLoader loader, const std::string& name)
-        : context_(loader, name), cache_(context_), handover_(context_), thumbnails_(context_) {}
+        : context_(loader, name),
+          cache_(context_),
+          handover_(context_),
+          thumbnails_(context_),
+          previews_(context_) {}
 
     [[nodiscard]] const std::string& renderer_name() const { return context_.renderer_name(); }
     PictureExchange& handover() { return handover_; }
     PictureExchange& thumbnails() { return thumbnails_; }
+    PictureExchange& previews() { return previews_; }
 
     void relink() {
         cache_.drop_programs();
@@ -296,13 +345,15 @@ class DrawThread::Drawer {
         tried_beside_ = revision_of(request.beside);
         tried_settings_ = request.settings;
         has_tried_ = true;
+        drawn.is_cancelled = false;
         failure_.clear();
         try {
             prepare(request, drawn);
             prepare_beside(request);
             cache_.drop_unused();
         } catch (const Cancelled&) {
-            throw;
+            failure_ = "the picture was cancelled before it was complete";
+            drawn.is_cancelled = true;
         } catch (const std::exception& error) {
             failure_ = error.what();
         }
@@ -336,6 +387,7 @@ class DrawThread::Drawer {
     RenderCache cache_;
     PictureExchange handover_;
     PictureExchange thumbnails_;
+    PictureExchange previews_;
     std::unique_ptr<Renderer> renderer_;
     std::unique_ptr<Renderer> beside_;
     FrameSettings settings_;  ///< Settings of the renderer.
@@ -384,6 +436,11 @@ void DrawThread::add(DrawTask task) {
     changed_.notify_all();
 }
 
+void DrawThread::cancel() {
+    const std::lock_guard lock(mutex_);
+    if (is_drawing_) progress_->cancel();
+}
+
 void DrawThread::relink() {
     const std::lock_guard lock(mutex_);
     is_relinking_ = true;
@@ -398,12 +455,24 @@ PictureExchange::Shown DrawThread::shown() {
     return handover_->get();
 }
 
-void DrawThread::put_thumbnails(Image picture) {
+void DrawThread::put(Image picture, PictureExchange* exchange) {
     auto shared = std::make_shared<const Image>(std::move(picture));
-    add([this, shared](const Context&, RenderCache&) {
-        thumbnails_->put(*shared);
+    add([exchange, shared](const Context&, RenderCache&) {
+        exchange->put(*shared);
         return false;
     });
+}
+
+void DrawThread::put_thumbnails(Image picture) {
+    put(std::move(picture), thumbnails_);
+}
+
+void DrawThread::put_previews(Image picture) {
+    put(std::move(picture), previews_);
+}
+
+PictureExchange::Shown DrawThread::previews() {
+    return previews_->get();
 }
 
 PictureExchange::Shown DrawThread::thumbnails() {
@@ -469,6 +538,7 @@ void DrawThread::run() {
             renderer_name_ = drawer.renderer_name();
             handover_ = &drawer.handover();
             thumbnails_ = &drawer.thumbnails();
+            previews_ = &drawer.previews();
             is_ready_ = true;
         }
         changed_.notify_all();

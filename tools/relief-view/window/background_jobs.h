@@ -246,40 +246,61 @@ class Thumbnails {
     /// Returns nothing if there is no picture yet, or the image cannot be decoded.
     [[nodiscard]] std::optional<Place> place_of(std::size_t image) const;
 
-  private:
     struct Result {
         Image picture;
-        std::vector<Place> places;
+        std::vector<Place> places;  ///< Without a size for images that cannot be decoded.
     };
+    /// Makes the picture of some images, at most max_count.
     static Result reduced(const std::vector<shade::ImageSource>& images);
 
+  private:
     NewestJob<Result> job_;
     bool is_wanted_ = false;
     std::vector<std::pair<std::string, FileStamp>> started_;  ///< Names of images, and their files.
     std::vector<Place> places_;
 };
 
-/// Reduces the resolution during motion if pictures are slow.
+/// Reduces the resolution during motion if pictures are slow, and restores it soon after.
 class AdaptiveResolution {
   public:
     /// Slower pictures make interaction lag.
     static constexpr double max_milliseconds = 60.0;
-    /// Motion ends after this time without a change.
-    static constexpr double idle_seconds = 0.15;
+    /// A picture at half the width and height may take this long before it gets coarser.
+    static constexpr double max_coarse_milliseconds = 100.0;
+    /// The picture at full resolution is to be there this long after motion.
+    static constexpr double seconds_to_full = 0.2;
 
-    /// Reports the time of a picture at full resolution.
-    void set_full_time(double milliseconds) { milliseconds_ = milliseconds; }
+    /// Reports the time of a picture.
+    /// \param full  the settings of the picture at full resolution
+    /// \param is_first  it is the first one of its scene. The driver may have compiled for it,
+    /// which
+    ///         later pictures do without.
+    void note_picture(const shade::FrameSettings& drawn, const shade::FrameSettings& full,
+                      double milliseconds, bool is_first);
 
     /// Reports motion at this time, in seconds.
     void note_motion(double now) { last_move_ = now; }
+    /// Motion has ended, because the user has released what moved.
+    void end_motion() { last_move_ = -1e9; }
+    /// The time from now until motion without a change counts as ended; 0 if it has ended.
+    [[nodiscard]] double seconds_until_rest(double now) const;
 
-    /// The settings for drawing. During motion, slow pictures get one sample per pixel and, if that
-    /// is not enough, a half to a quarter of the width and height, so that a picture takes about
-    /// max_milliseconds.
-    [[nodiscard]] shade::FrameSettings settings_for(shade::FrameSettings full, double now) const;
+    /// The settings for the next picture. During motion, slow pictures get three quarters or half
+    /// of the width and height, so that a picture takes about max_milliseconds; then one sample per
+    /// pixel; then a third of the size. After it, a picture that is too slow for seconds_to_full
+    /// comes in two steps, at first with one sample per pixel.
+    /// \param last  the settings of the last picture that was requested
+    /// \param is_idle  that picture has been drawn
+    [[nodiscard]] shade::FrameSettings next_settings(const shade::FrameSettings& full,
+                                                     const shade::FrameSettings& last, bool is_idle,
+                                                     double now) const;
 
   private:
-    double milliseconds_ = 0.0;
+    [[nodiscard]] double idle_seconds() const;
+    [[nodiscard]] shade::FrameSettings moving_settings(shade::FrameSettings full) const;
+
+    double milliseconds_ = 0.0;  ///< Of a picture at full resolution; 0: not known.
+    bool is_measured_ = false;   ///< Otherwise it is estimated.
     double last_move_ = -1e9;
 };
 
@@ -321,7 +342,8 @@ struct RenderedPicture {
     shade::FrameTimes times;
     std::shared_ptr<const shade::FramePlan> plan;
     Report findings;
-    std::string error;  ///< Empty if there was no error.
+    std::string error;          ///< Empty if there was no error.
+    bool is_cancelled = false;  ///< The preparation of the picture was cancelled.
     shade::FrameSettings settings;
     shade::Camera camera;
     /// The images and shaders that the last renderer read or tried to read. A new object after each
@@ -350,6 +372,10 @@ class DrawThread {
 
     void request(DrawRequest request);
 
+    /// Cancels the preparation of a picture. The old picture stays; the scene is prepared again
+    /// with the next revision.
+    void cancel();
+
     /// Links all programs again for the next picture, because shader files have changed.
     void relink();
 
@@ -363,6 +389,9 @@ class DrawThread {
     /// Makes a texture of a picture, which replaces that of the last call.
     void put_thumbnails(Image picture);
     [[nodiscard]] shade::PictureExchange::Shown thumbnails();
+    /// The same for another picture, that of the images of a folder.
+    void put_previews(Image picture);
+    [[nodiscard]] shade::PictureExchange::Shown previews();
 
     /// Returns whether a request is waiting or being drawn.
     [[nodiscard]] bool is_busy();
@@ -374,6 +403,7 @@ class DrawThread {
     class Drawer;
 
     void run();
+    void put(Image picture, shade::PictureExchange* exchange);
     void do_step(Drawer& drawer, std::unique_lock<std::mutex>& lock);
     std::optional<DrawRequest> next(Drawer& drawer);
     std::shared_ptr<Progress> progress_of_now();
@@ -394,6 +424,7 @@ class DrawThread {
     RenderedPicture drawn_;
     shade::PictureExchange* handover_ = nullptr;
     shade::PictureExchange* thumbnails_ = nullptr;
+    shade::PictureExchange* previews_ = nullptr;
     std::thread thread_;
 };
 

@@ -7,10 +7,12 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <cmath>
 #include <cstdint>
 #include <glm/trigonometric.hpp>
+#include <string_view>
 #include <utility>
 
 namespace relief::tools {
@@ -21,6 +23,7 @@ namespace {
 struct UiProbe {
     bool is_enabled = false;
     nlohmann::ordered_json positions = nlohmann::ordered_json::object();
+    std::vector<ProbedRow> rows;
 };
 
 UiProbe& ui_probe() {
@@ -36,14 +39,56 @@ void enable_ui_probe() {
 
 void clear_ui_probe() {
     ui_probe().positions = nlohmann::ordered_json::object();
+    ui_probe().rows.clear();
+}
+
+namespace {
+
+UiRectangle item_rectangle() {
+    const ImVec2 min = ImGui::GetItemRectMin();
+    const ImVec2 max = ImGui::GetItemRectMax();
+    return {{min.x, min.y}, {max.x, max.y}};
+}
+
+/// Begins a row whose label is the last item.
+void probe_label(const std::string& name) {
+    if (!ui_probe().is_enabled) return;
+    const ImRect& panel = ImGui::GetCurrentWindow()->InnerClipRect;
+    ui_probe().rows.push_back({name,
+                               item_rectangle(),
+                               {},
+                               {},
+                               {{panel.Min.x, panel.Min.y}, {panel.Max.x, panel.Max.y}},
+                               0.0F});
+}
+
+/// Stores the last item as the number of the last row.
+void probe_number(float width) {
+    if (!ui_probe().is_enabled || ui_probe().rows.empty()) return;
+    ui_probe().rows.back().number = item_rectangle();
+    ui_probe().rows.back().number_width = width;
+}
+
+}  // namespace
+
+const std::vector<ProbedRow>& probed_rows() {
+    return ui_probe().rows;
 }
 
 void probe_item(const std::string& name) {
-    if (!ui_probe().is_enabled || !ImGui::IsItemVisible()) return;
+    if (!ui_probe().is_enabled) return;
+    std::vector<ProbedRow>& rows = ui_probe().rows;
+    if (!rows.empty() && rows.back().name == name) rows.back().control = item_rectangle();
+    if (!ImGui::IsItemVisible()) return;
     const ImVec2 min = ImGui::GetItemRectMin();
     const ImVec2 max = ImGui::GetItemRectMax();
     ui_probe().positions[name] = {std::round(0.5F * (min.x + max.x)),
                                   std::round(0.5F * (min.y + max.y))};
+}
+
+void probe_place(const std::string& name, const glm::vec2& place) {
+    if (ui_probe().is_enabled)
+        ui_probe().positions[name] = {std::round(place.x), std::round(place.y)};
 }
 
 nlohmann::ordered_json ui_probe_json() {
@@ -52,32 +97,64 @@ nlohmann::ordered_json ui_probe_json() {
 
 namespace {
 
-// In line heights. The labels have space for the longest one, "Metallic-roughness map".
+// In line heights.
 constexpr float label_width = 12.5F;
+constexpr float label_share = 0.46F;  // Of a narrow panel.
 
 }  // namespace
 
-std::string begin_row(const char* label) {
+std::string begin_row(const char* label, float room) {
     const std::string text(label, ImGui::FindRenderedTextEnd(label));
     if (text.empty()) return label;
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::SameLine(label_width * ImGui::GetFontSize());
+    const float letter = ImGui::GetFontSize();
+    const float right = ImGui::GetContentRegionMax().x;
+    const float column = std::min(label_width * letter, label_share * right);
+    const float end = ImGui::GetCursorPosX() + ImGui::CalcTextSize(text.c_str()).x +
+                      ImGui::GetStyle().ItemInnerSpacing.x;
+    const float begin = std::max(column, end);
+    if (begin + room * letter <= right) {
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextUnformatted(text.c_str());
+        probe_label(label);
+        ImGui::SameLine(begin);
+    } else {
+        ImGui::PushTextWrapPos(0.0F);
+        ImGui::TextUnformatted(text.c_str());
+        ImGui::PopTextWrapPos();
+        probe_label(label);
+    }
     ImGui::SetNextItemWidth(-FLT_MIN);
     return std::string("##") + label;
 }
 
 bool check(const char* label, bool& value) {
-    const bool changed = ImGui::Checkbox(begin_row(label).c_str(), &value);
+    const bool changed = ImGui::Checkbox(begin_row(label, check_room).c_str(), &value);
     probe_item(label);
     return changed;
 }
 
+namespace {
+
+/// The width of a color field whose three numbers are not cut.
+float color_field_width(const glm::vec3& color) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    float number = 0.0F;
+    for (int i = 0; i < 3; ++i)
+        number = std::max(number, ImGui::CalcTextSize(fmt::format("{:.3f}", color[i]).c_str()).x);
+    return 3.0F * (number + 2.0F * style.FramePadding.x + style.ItemInnerSpacing.x) +
+           ImGui::GetFrameHeight();
+}
+
+}  // namespace
+
 bool pick_color(const char* label, glm::vec3& color, bool has_limit) {
-    const ImGuiColorEditFlags flags =
-        ImGuiColorEditFlags_Float |
-        (has_limit ? ImGuiColorEditFlags_None : ImGuiColorEditFlags_HDR);
-    const bool changed = ImGui::ColorEdit3(begin_row(label).c_str(), &color.x, flags);
+    ImGuiColorEditFlags flags = ImGuiColorEditFlags_Float |
+                                (has_limit ? ImGuiColorEditFlags_None : ImGuiColorEditFlags_HDR);
+    const float wanted = color_field_width(color);
+    const std::string id = begin_row(label, wanted / ImGui::GetFontSize());
+    // The numbers are also in the dialog that a click on the color opens.
+    if (ImGui::CalcItemWidth() < wanted) flags |= ImGuiColorEditFlags_NoInputs;
+    const bool changed = ImGui::ColorEdit3(id.c_str(), &color.x, flags);
     probe_item(label);
     return changed;
 }
@@ -95,13 +172,63 @@ bool choose_index(const char* label, std::size_t& index, std::span<const std::st
     return index != before;
 }
 
+namespace {
+
+/// The number of a slider as text.
+std::string number_text(float value, const char* format) {
+    std::array<char, 64> text{};
+    ImGui::DataTypeFormatString(text.data(), static_cast<int>(text.size()), ImGuiDataType_Float,
+                                &value, format);
+    return text.data();
+}
+
+/// The slider whose number was clicked; 0: none.
+ImGuiID& clicked_number() {
+    static ImGuiID id = 0;
+    return id;
+}
+
+/// Draws the number beside the slider that was drawn last.
+void draw_number(const std::string& text, ImGuiID slider, float width) {
+    ImGui::SameLine(0.0F, ImGui::GetStyle().ItemInnerSpacing.x);
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    if (ImGui::InvisibleButton("number", {width, ImGui::GetFrameHeight()}))
+        clicked_number() = slider;
+    probe_number(ImGui::CalcTextSize(text.c_str()).x);
+    if (ImGui::IsItemHovered()) {
+        ImGui::SetMouseCursor(ImGuiMouseCursor_TextInput);
+        ImGui::SetTooltip("Click to type a number");
+    }
+    ImGui::GetWindowDrawList()->AddText({corner.x, corner.y + ImGui::GetStyle().FramePadding.y},
+                                        ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
+}
+
+}  // namespace
+
 bool slide(const char* label, float& value, const Slider& slider) {
     const ImGuiSliderFlags flags =
         ImGuiSliderFlags_AlwaysClamp |
         (slider.is_logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
-    const std::string id = begin_row(label);
+    const std::string id = begin_row(label, slider_room);
+    const ImGuiID item = ImGui::GetID(id.c_str());
+    constexpr float number_column = 3.6F;  // In line heights.
+    const auto width_of = [&](float number) {
+        return ImGui::CalcTextSize(number_text(number, slider.format).c_str()).x;
+    };
+    const float number = std::max({number_column * ImGui::GetFontSize(), width_of(slider.min),
+                                   width_of(slider.max), width_of(value)});
+    ImGui::SetNextItemWidth(
+        std::max(ImGui::CalcItemWidth() - number - ImGui::GetStyle().ItemInnerSpacing.x, 1.0F));
+    if (clicked_number() == item) {
+        clicked_number() = 0;
+        ImGui::SetKeyboardFocusHere();
+    }
+    // The text inside of the slider is drawn only while it is typed.
+    const bool is_typed = ImGui::TempInputIsActive(item);
+    if (!is_typed) ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.0F, 0.0F, 0.0F, 0.0F));
     bool changed =
         ImGui::SliderFloat(id.c_str(), &value, slider.min, slider.max, slider.format, flags);
+    if (!is_typed) ImGui::PopStyleColor();
     probe_item(label);
     if (slider.default_value && value != *slider.default_value && ImGui::IsItemHovered()) {
         ImGui::SetTooltip("Right click: %s",
@@ -111,6 +238,9 @@ bool slide(const char* label, float& value, const Slider& slider) {
             changed = true;
         }
     }
+    ImGui::PushID(label);
+    draw_number(number_text(value, slider.format), item, number);
+    ImGui::PopID();
     return changed;
 }
 
@@ -123,8 +253,8 @@ bool slide_angle(const char* label, float& radians, const Slider& degrees) {
 
 bool drag_up(const char* label, float& value, float step) {
     constexpr float max = 1e6F;
-    const bool changed = ImGui::DragFloat(begin_row(label).c_str(), &value, step, 0.0F, max, "%.3g",
-                                          ImGuiSliderFlags_AlwaysClamp);
+    const bool changed = ImGui::DragFloat(begin_row(label, drag_room).c_str(), &value, step, 0.0F,
+                                          max, "%.3g", ImGuiSliderFlags_AlwaysClamp);
     probe_item(label);
     return changed;
 }
@@ -233,16 +363,16 @@ bool edit_path(std::string& text) {
 FileChoice file_field(const char* label, const std::optional<std::string>& shown,
                       const std::optional<Thumbnail>& thumbnail) {
     FileChoice choice;
-    begin_row(label);
+    begin_row(label, path_room);
     ImGui::PushID(label);
     if (thumbnail) {
         draw(*thumbnail);
         probe_item(std::string("thumbnail of ") + label);
         ImGui::SameLine(0.0F, ImGui::GetStyle().ItemInnerSpacing.x);
-        ImGui::SetNextItemWidth(-1.0F);
     }
     const float button = ImGui::GetFrameHeight();
-    if (shown) ImGui::SetNextItemWidth(-button - ImGui::GetStyle().ItemInnerSpacing.x);
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    ImGui::SetNextItemWidth(-(shown ? 2.0F : 1.0F) * (button + gap));
     std::string text = shown.value_or("");
     // Dear ImGui keeps the text while it is edited.
     if (edit_path(text)) {
@@ -255,8 +385,12 @@ FileChoice file_field(const char* label, const std::optional<std::string>& shown
     }
     probe_item(label);
     if (shown && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", shown->c_str());
+    ImGui::SameLine(0.0F, gap);
+    choice.is_browsing = ImGui::Button("...", {button, 0.0F});
+    probe_item(std::string("browse ") + label);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Select a file");
     if (shown) {
-        ImGui::SameLine(0.0F, ImGui::GetStyle().ItemInnerSpacing.x);
+        ImGui::SameLine(0.0F, gap);
         if (ImGui::Button("x", {button, 0.0F})) choice.is_cleared = true;
         probe_item(std::string("clear ") + label);
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("Remove");
@@ -265,8 +399,25 @@ FileChoice file_field(const char* label, const std::optional<std::string>& shown
     return choice;
 }
 
+std::string stage_title(const std::string& stage) {
+    static constexpr std::array<std::array<std::string_view, 2>, 8> titles{{
+        {"programs", "compiling shaders"},
+        {"images", "reading images"},
+        {"meshes", "reading meshes"},
+        {"environment", "lighting from the environment"},
+        {"uploading images", "handing images to the graphics card"},
+        {"uploading meshes", "handing meshes to the graphics card"},
+        {"strips", "reading strips"},
+        {"faces", "reading faces"},
+    }};
+    for (const auto& [name, title] : titles) {
+        if (name == stage) return std::string(title);
+    }
+    return stage;
+}
+
 void draw_progress(const std::string& what, const Progress::State& progress) {
-    const std::string stage = progress.stage.empty() ? "" : ": " + progress.stage;
+    const std::string stage = progress.stage.empty() ? "" : ": " + stage_title(progress.stage);
     ImGui::TextUnformatted((what + stage).c_str());
     if (progress.part) {
         ImGui::SameLine();

@@ -31,13 +31,43 @@ void clear_ui_probe();
 /// visible.
 void probe_item(const std::string& name);
 
+/// Stores a place of the picture under this name, in window units.
+void probe_place(const std::string& name, const glm::vec2& place);
+
 /// For example {"Lights": [120, 240]}.
 nlohmann::ordered_json ui_probe_json();
 
-/// Starts a row of two columns: draws the label, and makes the next item as wide as the second
-/// column.
+/// A rectangle in window units.
+struct UiRectangle {
+    glm::vec2 min{0.0F};
+    glm::vec2 max{0.0F};
+};
+
+/// The places of the parts of a row, for tests of the layout.
+struct ProbedRow {
+    std::string name;
+    UiRectangle label;
+    UiRectangle control;
+    UiRectangle number;         ///< Of a slider; otherwise without a size.
+    UiRectangle panel;          ///< The part of the panel that can be seen.
+    float number_width = 0.0F;  ///< The width of the text of the number.
+};
+/// The rows of this frame, if the probe is enabled.
+const std::vector<ProbedRow>& probed_rows();
+
+/// Widths that controls need to show their values, in line heights.
+inline constexpr float slider_room = 9.5F;
+inline constexpr float list_room = 7.0F;
+inline constexpr float drag_room = 4.5F;
+inline constexpr float check_room = 1.5F;
+inline constexpr float path_room = 9.0F;
+
+/// Starts a row of two columns: draws the label, and makes the next item as wide as the rest of the
+/// row. The item begins after a label that is wider than its column. If the rest is too small, the
+/// item comes below the label.
+/// \param room  the width that the item needs, in line heights
 /// \return the ImGui identifier of the item
-std::string begin_row(const char* label);
+std::string begin_row(const char* label, float room = list_room);
 
 /// A checkbox. \return whether the value changed
 bool check(const char* label, bool& value);
@@ -73,7 +103,8 @@ struct Slider {
     std::optional<float> default_value = std::nullopt;
 };
 
-/// \return whether the value changed
+/// A slider with its number beside it. A click on the number, or Ctrl+click on the slider, types
+/// another one. \return whether the value changed
 bool slide(const char* label, float& value, const Slider& slider = {});
 
 /// A slider in degrees for a value in radians.
@@ -119,6 +150,7 @@ std::filesystem::path pasted_path(std::string text);
 struct FileChoice {
     std::optional<std::filesystem::path> file;  ///< A path that was typed or pasted.
     bool is_cleared = false;                    ///< The user pressed the clear button.
+    bool is_browsing = false;                   ///< The user wants to select a file in a dialog.
 };
 
 /// A small picture of an image, as a part of a texture.
@@ -130,11 +162,14 @@ struct Thumbnail {
     glm::ivec2 image_size{0};  ///< Of the image itself.
 };
 
-/// A text field for the path of a file.
+/// A text field for the path of a file, with a button for a file dialog.
 /// \param shown  the current value, if there is one
 /// \param thumbnail  shown before the text, if there is one
 FileChoice file_field(const char* label, const std::optional<std::string>& shown,
                       const std::optional<Thumbnail>& thumbnail = std::nullopt);
+
+/// The name of a stage of Progress in panels, for example "compiling shaders" for "programs".
+std::string stage_title(const std::string& stage);
 
 /// Shows a label such as "Reading big.obj: parsing", and a progress bar if the share is known.
 void draw_progress(const std::string& what, const Progress::State& progress);

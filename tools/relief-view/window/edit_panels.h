@@ -8,6 +8,8 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -127,9 +129,36 @@ void set_model(Material& material, ShadingModel model);
 /// For example "Normal map".
 std::string map_title(TextureSlot slot);
 
-/// Returns whether the panel shows this map: the material's model uses it, and a map of a glTF
-/// extension is there.
+/// Returns whether the material's model uses this map.
 bool is_map_used(const Material& material, TextureSlot slot);
+
+/// The extension of a path in a material of glTF ("extensions/KHR_materials_ior/ior"), or empty.
+std::string_view extension_of(std::string_view gltf);
+
+/// What a group of the rows of a material edits.
+enum class MaterialTopic {
+    base,  ///< Without a header.
+    highlights,
+    reflection,
+    relief,
+    occlusion,
+    emission,
+    transparency,
+    extension,  ///< One extension of glTF.
+};
+
+/// Rows of a material that belong together.
+struct MaterialGroup {
+    MaterialTopic topic = MaterialTopic::base;
+    std::string title;           ///< For example "Clearcoat".
+    std::string_view extension;  ///< For example "KHR_materials_clearcoat".
+    bool has_effect = true;      ///< Otherwise its values change nothing, and it starts folded.
+    std::vector<TextureSlot> slots;
+};
+
+/// The groups of a material in the order of the panel. Those of extensions follow from the tables
+/// of fields and textures.
+std::vector<MaterialGroup> material_groups(const Material& material);
 
 /// The name of the image, if there is one.
 std::optional<std::string> map_name(const shade::Scene& scene, std::size_t material,

@@ -265,7 +265,7 @@ bool comes_before(const std::filesystem::path& a, const std::filesystem::path& b
 
 }  // namespace
 
-FolderListing list_folder(const std::filesystem::path& folder) {
+FolderListing list_folder(const std::filesystem::path& folder, ListedFiles listed) {
     FolderListing listing;
     std::error_code error;
     listing.folder = std::filesystem::absolute(folder.empty() ? "." : folder, error);
@@ -277,7 +277,8 @@ FolderListing list_folder(const std::filesystem::path& folder) {
         if (path.filename().string().starts_with('.')) continue;
         if (is_folder(path)) {
             listing.folders.push_back(path);
-        } else if (dropped_as(path) == DroppedAs::model || has_image_extension(path)) {
+        } else if (has_image_extension(path) ||
+                   (listed == ListedFiles::all && dropped_as(path) == DroppedAs::model)) {
             listing.files.push_back(path);
         }
     }

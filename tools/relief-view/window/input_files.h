@@ -120,6 +120,12 @@ DroppedAs dropped_as(const std::filesystem::path& file);
 /// ...) or else in alphabetical order.
 ViewOptions with_dropped(ViewOptions options, const std::vector<std::filesystem::path>& files);
 
+/// The files of a folder that are listed.
+enum class ListedFiles {
+    all,     ///< Models, scenes and images.
+    images,  ///< Images only.
+};
+
 /// The folders of a folder, with its parent first, and the files that the window can show; both in
 /// alphabetical order. Hidden files are left out.
 struct FolderListing {
@@ -128,7 +134,8 @@ struct FolderListing {
     std::vector<std::filesystem::path> files;
     std::string error;  ///< Why the folder cannot be read; empty if it can.
 };
-FolderListing list_folder(const std::filesystem::path& folder);
+FolderListing list_folder(const std::filesystem::path& folder,
+                          ListedFiles listed = ListedFiles::all);
 
 /// The next model or scene in the folder of this one, or the previous one; the first one follows
 /// the last one. Empty if there is no other.

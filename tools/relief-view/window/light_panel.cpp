@@ -239,12 +239,13 @@ void LightRows::advance(Scene& scene, double seconds, const glm::vec3& center) c
 
 namespace {
 
-/// Edits a color as a normalized color and an intensity.
-bool edit_light_color(glm::vec3& irradiance) {
+/// Edits a color as a normalized color and an intensity, in rows of these names.
+bool edit_light_color(glm::vec3& irradiance, const char* color_label = "Color",
+                      const char* intensity_label = "Intensity") {
     float strength = std::max({irradiance.x, irradiance.y, irradiance.z});
     glm::vec3 color = strength > 0.0F ? irradiance / strength : glm::vec3(1.0F);
-    bool changed = pick_color("Color", color);
-    changed |= drag_up("Intensity", strength);
+    bool changed = pick_color(color_label, color);
+    changed |= drag_up(intensity_label, strength);
     if (changed) irradiance = std::max(strength, 0.0F) * glm::max(color, glm::vec3(0.0F));
     return changed;
 }
@@ -255,10 +256,7 @@ bool edit_highlights(std::optional<glm::vec3>& highlight, const glm::vec3& light
     bool changed = check("Own highlight color", has_own);
     if (changed) highlight = has_own ? std::optional(light) : std::nullopt;
     if (!highlight) return changed;
-    ImGui::PushID("highlights");
-    changed |= edit_light_color(*highlight);
-    ImGui::PopID();
-    return changed;
+    return edit_light_color(*highlight, "Highlight color", "Highlight intensity") || changed;
 }
 
 bool edit_direction(glm::vec3& direction) {
@@ -279,7 +277,10 @@ bool edit_common(Light& light) {
 }
 
 bool edit_point(PointLight& light) {
-    bool changed = ImGui::DragFloat3(begin_row("Position").c_str(), &light.position_world.x, 0.01F);
+    constexpr float room = 14.5F;  // For three numbers, in line heights.
+    bool changed = ImGui::DragFloat3(begin_row("Position", room).c_str(), &light.position_world.x,
+                                     0.01F, 0.0F, 0.0F, "%.2f");
+    probe_item("Position");
     changed |= edit_light_color(light.intensity);
     changed |= edit_highlights(light.highlight_intensity, light.intensity);
     bool falls_off = light.falloff == Falloff::inverse_square;

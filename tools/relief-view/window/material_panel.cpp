@@ -73,9 +73,7 @@ bool is_map_used(const Material& material, TextureSlot slot) {
     if (material.unlit) return false;
     if (slot == TextureSlot::specular) return !material.metallic_roughness;
     if (!is_of_metallic_roughness(info)) return true;
-    const bool is_of_extension = slot != TextureSlot::metallic_roughness;
-    return material.metallic_roughness &&
-           (!is_of_extension || find_texture(material, slot) != nullptr);
+    return material.metallic_roughness.has_value();
 }
 
 std::optional<std::string> map_name(const Scene& scene, std::size_t material, TextureSlot slot) {
@@ -120,17 +118,17 @@ void set_map(Scene& scene, std::size_t material, TextureSlot slot,
 
 namespace {
 
-bool edit_metallic_roughness(MetallicRoughness& model) {
+/// Edits the factors of an extension, or those of glTF's core.
+bool edit_factors(MetallicRoughness& model, std::string_view extension) {
     bool changed = false;
-    for_each_field<MetallicRoughness>(
-        [&](const auto& field) { changed |= edit_field(model, field); });
+    for_each_field<MetallicRoughness>([&](const auto& field) {
+        if (extension_of(field.gltf) == extension) changed |= edit_field(model, field);
+    });
     return changed;
 }
 
-bool edit_phong(Material& material) {
-    bool changed = edit_field(material, &Material::diffuse);
-    changed |= edit_field(material, &Material::ambient);
-    changed |= edit_field(material, &Material::specular);
+bool edit_highlights(Material& material) {
+    bool changed = edit_field(material, &Material::specular);
     changed |= edit_field(material, &Material::shininess);
     changed |= choose("Highlights", material.specular_model);
     changed |= check("Fresnel on highlights", material.highlight_fresnel);
@@ -149,21 +147,18 @@ bool edit_reflection(Material& material) {
     return changed;
 }
 
-bool edit_model(Material& material) {
+/// Edits the model and its main colors.
+bool edit_base(Material& material) {
     ShadingModel model = model_of(material);
     bool changed = choose("Model", model);
     if (changed) set_model(material, model);
-    if (material.metallic_roughness) {
-        changed |= edit_metallic_roughness(*material.metallic_roughness);
-    } else if (material.unlit) {
-        changed |= pick_color("Color", material.diffuse);
-    } else {
-        changed |= edit_phong(material);
-        changed |= edit_reflection(material);
-    }
-    if (!material.unlit) {
-        changed |= edit_field(material, &Material::emission);
-    }
+    changed |= choose("Shading", material.interpolation);
+    changed |= check("Double-sided", material.double_sided);
+    if (material.unlit) return pick_color("Color", material.diffuse) || changed;
+    if (material.metallic_roughness)
+        return edit_factors(*material.metallic_roughness, "") || changed;
+    changed |= edit_field(material, &Material::diffuse);
+    changed |= edit_field(material, &Material::ambient);
     return changed;
 }
 
@@ -186,6 +181,39 @@ bool edit_relief(Material& material) {
     return changed;
 }
 
+bool edit_transparency(Material& material) {
+    bool changed = choose("Alpha", material.alpha_mode);
+    if (material.alpha_mode != AlphaMode::opaque)
+        changed |= edit_field(material, &Material::opacity);
+    if (material.alpha_mode == AlphaMode::mask)
+        changed |= edit_field(material, &Material::alpha_cutoff);
+    return changed;
+}
+
+/// Edits the numbers, colors and choices of a group.
+bool edit_values(Material& material, const MaterialGroup& group) {
+    switch (group.topic) {
+        case MaterialTopic::base:
+            return edit_base(material);
+        case MaterialTopic::highlights:
+            return edit_highlights(material);
+        case MaterialTopic::reflection:
+            return edit_reflection(material);
+        case MaterialTopic::relief:
+            return edit_relief(material);
+        case MaterialTopic::occlusion:
+            return material.occlusion_texture &&
+                   edit_field(material, &Material::occlusion_strength);
+        case MaterialTopic::emission:
+            return edit_field(material, &Material::emission);
+        case MaterialTopic::transparency:
+            return edit_transparency(material);
+        case MaterialTopic::extension:
+            return edit_factors(*material.metallic_roughness, group.extension);
+    }
+    return false;
+}
+
 /// Returns the small picture of an image, if it has been made.
 std::optional<Thumbnail> thumbnail_of(const PanelInput& input, std::size_t image) {
     if (input.thumbnails == nullptr) return std::nullopt;
@@ -193,45 +221,31 @@ std::optional<Thumbnail> thumbnail_of(const PanelInput& input, std::size_t image
     const std::optional<Thumbnails::Place> place = input.thumbnails->place_of(image);
     const PictureExchange::Shown& texture = input.thumbnail_texture;
     if (!place || texture.texture == 0) return std::nullopt;
-    // The first row of a texture is at the bottom.
-    const glm::vec2 scale(1.0F / static_cast<float>(texture.width),
-                          1.0F / static_cast<float>(texture.height));
-    const glm::vec2 min = glm::vec2(place->min) * scale;
-    const glm::vec2 max = glm::vec2(place->min + place->size) * scale;
-    return Thumbnail{texture.texture,
-                     {min.x, 1.0F - min.y},
-                     {max.x, 1.0F - max.y},
-                     place->size,
-                     place->image_size};
+    return thumbnail_in(texture, *place);
 }
 
-/// Edits the files of the maps. If a file cannot be used, the state reports the error.
-void edit_maps(const PanelInput& input, std::size_t index) {
+/// Edits the file of a map. If a file cannot be used, the state reports the error.
+void edit_map(const PanelInput& input, std::size_t index, TextureSlot slot,
+              PanelRequests& requests) {
     ViewerState& state = input.state;
-    for (const TextureSlotInfo& info : texture_slots) {
-        const TextureSlot slot = info.slot;
-        if (!is_map_used(state.scene().materials[index], slot)) continue;
-        const Texture* const texture = find_texture(state.scene().materials[index], slot);
-        const FileChoice choice =
-            file_field(map_title(slot).c_str(), map_name(state.scene(), index, slot),
-                       texture != nullptr ? thumbnail_of(input, texture->image) : std::nullopt);
-        if (choice.file) {
-            state.set_map(index, slot, *choice.file);
-        } else if (choice.is_cleared) {
-            state.edit([&](Scene& scene) { remove_texture(scene.materials[index], slot); });
-        }
+    const Texture* const texture = find_texture(state.scene().materials[index], slot);
+    const std::optional<std::string> name = map_name(state.scene(), index, slot);
+    const std::optional<Thumbnail> thumbnail =
+        texture != nullptr ? thumbnail_of(input, texture->image) : std::nullopt;
+    const FileChoice choice = file_field(map_title(slot).c_str(), name, thumbnail);
+    if (choice.is_browsing) {
+        requests.browse = BrowseRequest{
+            .target = {.kind = BrowseTarget::Kind::map, .material = index, .slot = slot},
+            .title = fmt::format("{} of {}", map_title(slot), material_label(state.scene(), index)),
+            .folder = folder_to_browse(name, state.options().model),
+            .present = name,
+            .thumbnail = thumbnail};
     }
-}
-
-bool edit_surface(Material& material) {
-    bool changed = choose("Shading", material.interpolation);
-    changed |= choose("Alpha", material.alpha_mode);
-    if (material.alpha_mode != AlphaMode::opaque)
-        changed |= edit_field(material, &Material::opacity);
-    if (material.alpha_mode == AlphaMode::mask)
-        changed |= edit_field(material, &Material::alpha_cutoff);
-    changed |= check("Double-sided", material.double_sided);
-    return changed;
+    if (choice.file) {
+        state.set_map(index, slot, *choice.file);
+    } else if (choice.is_cleared) {
+        state.edit([&](Scene& scene) { remove_texture(scene.materials[index], slot); });
+    }
 }
 
 template <typename Edit>
@@ -240,12 +254,43 @@ void edit_part(ViewerState& state, std::size_t index, const Edit& edit) {
     if (edit(material)) state.edit([&](Scene& scene) { scene.materials[index] = material; });
 }
 
-void edit_material(const PanelInput& input, std::size_t index) {
-    ViewerState& state = input.state;
-    edit_part(state, index, edit_model);
-    edit_maps(input, index);
-    edit_part(state, index, edit_relief);
-    edit_part(state, index, edit_surface);
+void edit_group(const PanelInput& input, std::size_t index, const MaterialGroup& group,
+                PanelRequests& requests) {
+    edit_part(input.state, index, [&](Material& material) { return edit_values(material, group); });
+    for (const TextureSlot slot : group.slots) {
+        if (is_map_used(input.state.scene().materials[index], slot))
+            edit_map(input, index, slot, requests);
+    }
+}
+
+/// Draws the header of a group, which starts folded if the group has no effect.
+/// \return whether the group is open
+bool begins_group(const MaterialGroup& group) {
+    ImGui::SetNextItemOpen(group.has_effect, ImGuiCond_Once);
+    const bool is_open = ImGui::TreeNode(group.title.c_str());
+    probe_item("group " + group.title);
+    if (!group.extension.empty() && ImGui::IsItemHovered())
+        ImGui::SetTooltip("%s", std::string(group.extension).c_str());
+    if (!group.has_effect) {
+        ImGui::SameLine();
+        ImGui::TextDisabled("no effect");
+        probe_item(fmt::format("group {} has no effect", group.title));
+    }
+    return is_open;
+}
+
+void edit_material(const PanelInput& input, std::size_t index, PanelRequests& requests) {
+    for (const MaterialGroup& group : material_groups(input.state.scene().materials[index])) {
+        if (group.topic == MaterialTopic::base) {
+            edit_group(input, index, group, requests);
+        } else if (begins_group(group)) {
+            // A change of the model, above, ends these groups.
+            const Material& material = input.state.scene().materials[index];
+            if (group.topic != MaterialTopic::extension || material.metallic_roughness)
+                edit_group(input, index, group, requests);
+            ImGui::TreePop();
+        }
+    }
 }
 
 /// Edits properties of all materials at once.
@@ -269,7 +314,7 @@ void edit_all(ViewerState& state) {
 
 }  // namespace
 
-void draw_material_panel(const PanelInput& input) {
+void draw_material_panel(const PanelInput& input, PanelRequests& requests) {
     ViewerState& state = input.state;
     if (!state.has_scene()) return;
     if (uses_default_material(state.scene())) {
@@ -279,6 +324,7 @@ void draw_material_panel(const PanelInput& input) {
         probe_item("Edit");
     }
     if (!state.scene().materials.empty()) edit_all(state);
+    ImGui::PushID(state.options().model.c_str());  // Each model has its own open groups.
     for (std::size_t i = 0; i < state.scene().materials.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
         const std::string label = material_label(state.scene(), i);
@@ -286,11 +332,12 @@ void draw_material_panel(const PanelInput& input) {
         const bool is_open = ImGui::TreeNode("material", "%s", label.c_str());
         probe_item(label);
         if (is_open) {
-            edit_material(input, i);
+            edit_material(input, i, requests);
             ImGui::TreePop();
         }
         ImGui::PopID();
     }
+    ImGui::PopID();
 }
 
 }  // namespace relief::tools

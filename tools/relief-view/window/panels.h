@@ -14,6 +14,7 @@
 #include "view_options.h"
 #include "window/background_jobs.h"
 #include "window/capture.h"
+#include "window/file_browser.h"
 #include "window/input_files.h"
 #include "window/viewer_state.h"
 #include "window/window_system.h"
@@ -46,16 +47,20 @@ struct PanelInput {
     Thumbnails* thumbnails = nullptr;
     shade::PictureExchange::Shown thumbnail_texture{};
     ProbePanel* probe = nullptr;
+    ImagePreviews* previews = nullptr;  ///< Of the file dialog.
+    shade::PictureExchange::Shown preview_texture{};
 };
 
 /// The panels' requests to the window.
 struct PanelRequests {
     std::vector<Action> actions;                  ///< Of buttons and menus.
     std::optional<std::filesystem::path> open;    ///< A file that was selected.
+    std::optional<BrowseRequest> browse;          ///< Select a file in the dialog.
     std::optional<std::string> material_variant;  ///< Empty: the materials without a variant.
     std::optional<float> ambient_occlusion;       ///< Its distance; 0 is none.
     std::optional<MapKind> assume;                ///< Read the model again as with --assume.
-    bool cancel_loading = false;
+    bool cancel_loading = false;                  ///< Of reading, or else of preparing the picture.
+    bool redraw = false;                          ///< Prepare the picture that was cancelled.
     bool save_picture = false;
     bool save_turn = false;
     bool measure_effects = false;
@@ -69,8 +74,8 @@ struct PanelRequests {
 
 void draw_scene_panel(const PanelInput& input, PanelRequests& requests);
 void draw_light_panel(const PanelInput& input);
-void draw_material_panel(const PanelInput& input);
-void draw_environment_panel(const PanelInput& input);
+void draw_material_panel(const PanelInput& input, PanelRequests& requests);
+void draw_environment_panel(const PanelInput& input, PanelRequests& requests);
 void draw_picture_panel(const PanelInput& input);
 void draw_compare_panel(const PanelInput& input);
 void draw_capture_panel(const PanelInput& input, PanelRequests& requests);
@@ -81,33 +86,58 @@ void draw_view_panel(const PanelInput& input);
 /// The panel headers from top to bottom.
 std::vector<std::string> panel_names();
 
-/// Draws the toolbar and all panels in one column. \return its width in window units
-float draw_panels(const PanelInput& input, PanelRequests& requests);
+/// Where the panels of a window are.
+struct PanelArrangement {
+    /// The window is too small for panels beside most of a picture: they are folded until they are
+    /// asked for, and the toolbar is above the picture.
+    bool is_folded = false;
+    bool is_below = false;  ///< Folded panels open below the picture, not beside it.
+    float width = 0.0F;     ///< Of the open panels, in window units.
+    float height = 0.0F;    ///< Of panels that open below the picture; else 0.
+};
+
+/// \param window  the size in window units
+/// \param letter  the line height
+PanelArrangement arrange_panels(const glm::vec2& window, float letter);
+
+/// The parts of the window that the panels take from the picture, in window units.
+struct PanelSpace {
+    float left = 0.0F;
+    float bottom = 0.0F;      ///< Without the status line.
+    glm::vec2 toolbar{0.0F};  ///< The size of a toolbar above the picture, at the upper left.
+};
+
+/// Draws the toolbar and the open panels.
+/// \param are_open  whether folded panels are open
+PanelSpace draw_panels(const PanelInput& input, bool are_open, PanelRequests& requests);
 
 /// Draws the controls of the animation below the picture, if there is one: play, time, speed, clip.
 /// \param left, bottom  the width and height that other parts of the window occupy
 /// \return its height in window units
 float draw_playback(ViewerState& state, float left, float bottom);
 
-/// Draws the status line at the bottom: triangles, frame time, current work.
+/// Draws the status line at the bottom: current work, errors, size of model and picture.
 void draw_status(const PanelInput& input, PanelRequests& requests);
 
-/// Draws the list of shortcuts in the center of the window.
-void draw_help(bool& is_open);
-
-/// A dialog that selects a file of a folder, or a recent one.
-class FileDialog {
+/// The list of shortcuts and gestures by group, in the center of the window, with a search.
+class HelpWindow {
   public:
-    /// \param folder  the folder that is listed first
-    void open(const std::filesystem::path& folder);
+    void toggle() { is_open_ = !is_open_; }
+    void close() { is_open_ = false; }
     [[nodiscard]] bool is_open() const { return is_open_; }
-
-    /// \return the selected file; then the dialog is closed
-    std::optional<std::filesystem::path> draw(const std::vector<std::string>& recent_files);
+    /// The next frame gives the keyboard to the search.
+    void focus_search() { wants_focus_ = true; }
+    void draw();
 
   private:
     bool is_open_ = false;
-    FolderListing listing_;
+    bool wants_focus_ = false;
+    std::string search_;
 };
+
+/// Draws the progress of reading or drawing in the middle of a view that has no picture yet, with a
+/// button that cancels it. \param min, max  the view in window units
+void draw_waiting(const PanelInput& input, const glm::vec2& min, const glm::vec2& max,
+                  PanelRequests& requests);
 
 }  // namespace relief::tools

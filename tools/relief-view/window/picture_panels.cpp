@@ -49,7 +49,7 @@ bool edit(Environment& environment) {
 
 }  // namespace
 
-void draw_environment_panel(const PanelInput& input) {
+void draw_environment_panel(const PanelInput& input, PanelRequests& requests) {
     ViewerState& state = input.state;
     if (!state.has_scene()) return;
     std::optional<std::string> name;
@@ -57,6 +57,12 @@ void draw_environment_panel(const PanelInput& input) {
     const FileChoice choice = file_field("Image or folder", name);
     if (!name && ImGui::Button("Photo studio")) state.set_environment("studio");
     if (!name) probe_item("Photo studio");
+    if (choice.is_browsing) {
+        requests.browse = BrowseRequest{.target = {.kind = BrowseTarget::Kind::environment},
+                                        .title = "Environment: an image or a folder",
+                                        .folder = folder_to_browse(name, state.options().model),
+                                        .present = name};
+    }
     if (choice.file) {
         state.set_environment(*choice.file);
     } else if (choice.is_cleared) {
@@ -120,6 +126,7 @@ void draw_view_panel(const PanelInput& input) {
         changed = true;
     }
     if (choices.health_markers) draw_legend(input.state.markers());
+    check("Axes in the corner", input.layout.has_axes);
     bool has_light_markers = input.state.has_light_markers();
     if (check("Light markers", has_light_markers)) input.state.act(Action::light_markers);
     if (changed) input.state.set_debug(choices);

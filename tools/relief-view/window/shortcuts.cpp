@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <sstream>
+
 namespace relief::tools {
 
 const std::vector<Shortcut>& shortcuts() {
@@ -64,6 +66,8 @@ const std::vector<Shortcut>& shortcuts() {
         {Action::help, "F1", "Show the shortcuts"},
         {Action::help, "H", "Show the shortcuts"},
         {Action::help, "?", "Show the shortcuts"},
+        {Action::axis_gizmo, "A", "Show or hide the axes in the corner"},
+        {Action::cancel, "Escape", "Cancel reading or drawing; close a list"},
         {Action::quit, "Ctrl+Q", "Close the window"},
     };
     return all;
@@ -80,17 +84,104 @@ const std::vector<Gesture>& gestures() {
         {"Drag the line", "Move the line between two compared pictures"},
         {"Click, while pixels are explained", "Pin the pixel, or follow the pointer again"},
         {"Double click", "Set the orbit center to this point"},
+        {"Click an axis", "Look along this axis"},
+        {"Drag a light", "Move this light; the panel Lights shows the lights"},
         {"Drop a file", "Show a model, or apply a map"},
     };
     return all;
 }
 
+std::string_view shortcut_group(Action action) {
+    switch (action) {
+        case Action::fit:
+        case Action::front:
+        case Action::back:
+        case Action::left:
+        case Action::right:
+        case Action::top:
+        case Action::bottom:
+        case Action::narrow_fov:
+        case Action::widen_fov:
+        case Action::orthographic:
+        case Action::zoom_in:
+        case Action::zoom_out:
+        case Action::orbit_left:
+        case Action::orbit_right:
+        case Action::orbit_up:
+        case Action::orbit_down:
+        case Action::copy_camera:
+        case Action::paste_camera:
+            return "Camera";
+        case Action::brighter:
+        case Action::darker:
+        case Action::next_view:
+        case Action::previous_view:
+        case Action::picture_view:
+        case Action::wireframe:
+        case Action::vertex_frames:
+        case Action::grid:
+        case Action::health_markers:
+        case Action::light_markers:
+            return "Picture";
+        case Action::turntable:
+        case Action::play:
+        case Action::step_back:
+        case Action::step_forward:
+            return "Motion";
+        case Action::compare:
+        case Action::swap_sides:
+        case Action::show_difference:
+            return "Comparison";
+        case Action::undo:
+        case Action::redo:
+            return "Editing";
+        case Action::save_picture:
+        case Action::save_scene:
+        case Action::save_model:
+        case Action::open:
+        case Action::next_file:
+        case Action::previous_file:
+            return "Files";
+        default:
+            return "Window";
+    }
+}
+
+std::vector<std::string_view> shortcut_groups() {
+    return {"Camera",  "Picture", "Motion", "Comparison",
+            "Editing", "Files",   "Window", gesture_group};
+}
+
+bool matches_search(std::string_view search, std::initializer_list<std::string_view> texts) {
+    const auto lower = [](std::string_view text) {
+        std::string result(text);
+        for (char& c : result) {
+            if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+        }
+        return result;
+    };
+    std::string all;
+    for (const std::string_view text : texts)
+        all += lower(text) + "\n";
+    std::istringstream words(lower(search));
+    for (std::string word; words >> word;) {
+        if (all.find(word) == std::string::npos) return false;
+    }
+    return true;
+}
+
 std::string shortcuts_text() {
     std::string text;
-    for (const Shortcut& shortcut : shortcuts())
-        text += fmt::format("{:<32}{}\n", shortcut.key, shortcut.description);
-    for (const Gesture& gesture : gestures())
-        text += fmt::format("{:<32}{}\n", gesture.input, gesture.description);
+    for (const std::string_view group : shortcut_groups()) {
+        text += fmt::format("{}{}\n", text.empty() ? "" : "\n", group);
+        for (const Shortcut& shortcut : shortcuts()) {
+            if (shortcut_group(shortcut.action) == group)
+                text += fmt::format("  {:<32}{}\n", shortcut.key, shortcut.description);
+        }
+        if (group != gesture_group) continue;
+        for (const Gesture& gesture : gestures())
+            text += fmt::format("  {:<32}{}\n", gesture.input, gesture.description);
+    }
     return text;
 }
 

@@ -4,6 +4,7 @@
 /// --list-bindings use. Tests: tests/tools/window/user_interface_test.cpp.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -62,6 +63,8 @@ enum class Action {
     smaller_ui,
     reset_ui_scale,
     help,
+    axis_gizmo,
+    cancel,
     quit,
 };
 
@@ -74,6 +77,16 @@ struct Shortcut {
 /// All shortcuts. Some actions have two.
 const std::vector<Shortcut>& shortcuts();
 
+/// The group of an action in lists: "Camera", "Picture", "Motion", "Comparison", "Editing", "Files"
+/// or "Window".
+std::string_view shortcut_group(Action action);
+/// All groups, in the order of lists. The last one is that of the gestures.
+std::vector<std::string_view> shortcut_groups();
+inline constexpr std::string_view gesture_group = "Mouse";
+
+/// Returns whether every word of a search is in one of the texts. Upper and lower case are equal.
+bool matches_search(std::string_view search, std::initializer_list<std::string_view> texts);
+
 /// A mouse gesture, for example "Shift+drag", and its description.
 struct Gesture {
     std::string_view input;
@@ -81,7 +94,7 @@ struct Gesture {
 };
 const std::vector<Gesture>& gestures();
 
-/// Both lists, one entry per line.
+/// Both lists by group, one entry per line.
 std::string shortcuts_text();
 
 }  // namespace relief::tools

@@ -15,11 +15,11 @@
 #include <cmath>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <utility>
 
 #include "window/comparison.h"
 #include "window/controls.h"
+#include "window/interface_style.h"
 #include "window/orbit_camera.h"
 #include "window/viewer_state.h"
 
@@ -105,61 +105,11 @@ void draw_hint(const ViewPlace& place) {
     draw_label(text, {x, place.max.y - 2.0F * ImGui::GetFontSize() - size.y}, 0.0F);
 }
 
-/// The characters of the font: Latin, Greek, Cyrillic and punctuation.
-constexpr std::array<ImWchar, 9> font_glyphs{0x20,  0x17F,  0x370,  0x3FF, 0x400,
-                                             0x4FF, 0x2010, 0x2044, 0};
-
-/// Sizes and colors of the panels.
-ImGuiStyle style_of(bool is_light) {
-    ImGuiStyle style;
-    style.WindowRounding = 0.0F;
-    style.FrameRounding = 3.0F;
-    style.GrabRounding = 3.0F;
-    style.PopupRounding = 4.0F;
-    style.ScrollbarRounding = 3.0F;
-    style.ScrollbarSize = 12.0F;
-    style.ItemSpacing = {8.0F, 5.0F};
-    style.WindowBorderSize = 0.0F;
-    is_light ? ImGui::StyleColorsLight(&style) : ImGui::StyleColorsDark(&style);
-    const auto gray = [](float value) { return ImVec4(value, value, value * 1.02F, 1.0F); };
-    const ImVec4 accent =
-        is_light ? ImVec4(0.13F, 0.42F, 0.72F, 1.0F) : ImVec4(0.38F, 0.64F, 0.90F, 1.0F);
-    // The dark and the light gray of each part.
-    const std::array<std::tuple<ImGuiCol, float, float>, 19> grays{{
-        {ImGuiCol_Text, 0.88F, 0.12F},
-        {ImGuiCol_TextDisabled, 0.56F, 0.42F},
-        {ImGuiCol_WindowBg, 0.13F, 0.94F},
-        {ImGuiCol_PopupBg, 0.15F, 0.97F},
-        {ImGuiCol_Border, 0.27F, 0.78F},
-        {ImGuiCol_FrameBg, 0.19F, 0.98F},
-        {ImGuiCol_FrameBgHovered, 0.24F, 0.91F},
-        {ImGuiCol_FrameBgActive, 0.28F, 0.87F},
-        {ImGuiCol_TitleBg, 0.15F, 0.88F},
-        {ImGuiCol_TitleBgActive, 0.18F, 0.84F},
-        {ImGuiCol_Button, 0.25F, 0.86F},
-        {ImGuiCol_ButtonHovered, 0.31F, 0.80F},
-        {ImGuiCol_ButtonActive, 0.36F, 0.74F},
-        {ImGuiCol_Header, 0.19F, 0.88F},
-        {ImGuiCol_HeaderHovered, 0.25F, 0.83F},
-        {ImGuiCol_HeaderActive, 0.29F, 0.78F},
-        {ImGuiCol_Tab, 0.19F, 0.88F},
-        {ImGuiCol_TabActive, 0.29F, 0.97F},
-        {ImGuiCol_ScrollbarBg, 0.13F, 0.94F},
-    }};
-    for (const auto& [part, dark, light] : grays)
-        style.Colors[part] = gray(is_light ? light : dark);
-    for (const ImGuiCol part : {ImGuiCol_CheckMark, ImGuiCol_PlotHistogram, ImGuiCol_TabHovered})
-        style.Colors[part] = accent;
-    // The number of a slider shows through its handle.
-    style.Colors[ImGuiCol_SliderGrab] = ImVec4(accent.x, accent.y, accent.z, 0.45F);
-    style.Colors[ImGuiCol_SliderGrabActive] = ImVec4(accent.x, accent.y, accent.z, 0.7F);
-    return style;
-}
-
 constexpr ImU32 backdrop = IM_COL32(24, 26, 30, 255);
 constexpr double double_click_seconds = 0.35;
 constexpr float double_click_reach = 6.0F;  // In window units.
 constexpr float click_reach = 3.0F;         // A longer way is a drag.
+constexpr float handle_reach = 11.0F;       // For axes and lights, at the interface scale 1.
 constexpr float line_reach = 6.0F;          // For the line between two pictures.
 constexpr float drag_zoom = 0.02F;          // Wheel steps per pixel of a right drag.
 constexpr float wheel_pan = 40.0F;          // Window units per wheel step.
@@ -279,26 +229,20 @@ UserInterface::~UserInterface() {
     ImGui::DestroyContext();
 }
 
-/// Glyphs are rasterized again in pixels. Other sizes are in window units.
 void UserInterface::apply_scale() {
     if (scale_ == wanted_scale_ && has_light_theme_ == wants_light_theme_) return;
     scale_ = wanted_scale_;
     has_light_theme_ = wants_light_theme_;
-    ImGuiIO& io = ImGui::GetIO();
-    io.Fonts->Clear();
-    if (const std::optional<std::filesystem::path> file = interface_font()) {
-        io.Fonts->AddFontFromFileTTF(file->c_str(), std::round(14.0F * scale_.glyphs), nullptr,
-                                     font_glyphs.data());
-    } else {
-        ImFontConfig font;
-        font.SizePixels = std::round(13.0F * scale_.glyphs);
-        io.Fonts->AddFontDefault(&font);
-    }
-    io.FontGlobalScale = scale_.layout / scale_.glyphs;
-    ImGui::GetStyle() = style_of(has_light_theme_);
-    ImGui::GetStyle().ScaleAllSizes(scale_.layout);
+    apply_interface_style(scale_, has_light_theme_);
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
+void UserInterface::toggle_panels(WindowLayout& layout) {
+    const ImVec2 window = ImGui::GetIO().DisplaySize;
+    const bool is_folded = arrange_panels(vec(window), ImGui::GetFontSize()).is_folded;
+    bool& is_on = is_folded && layout.has_panels ? are_folded_panels_open_ : layout.has_panels;
+    is_on = !is_on;
 }
 
 bool UserInterface::is_typing() {
@@ -313,7 +257,9 @@ std::optional<glm::ivec2> UserInterface::pointer() {
 
 void UserInterface::on_key(int key, int modifiers, bool is_held) {
     if (is_typing() || dialog_.is_open()) return;
-    if (key == GLFW_KEY_ESCAPE) is_help_open_ = false;
+    const bool has_control = (modifiers & GLFW_MOD_CONTROL) != 0;
+    if (help_.is_open() && has_control && key == GLFW_KEY_F) help_.focus_search();
+    if (help_.is_open() && key == GLFW_KEY_ESCAPE) return help_.close();
     for (const Shortcut& shortcut : shortcuts()) {
         if (is_named(shortcut.key, key, modifiers) && (!is_held || is_repeating(shortcut.action)))
             pressed_.push_back(shortcut.action);
@@ -325,7 +271,8 @@ bool UserInterface::is_on_picture() const {
     glfwGetWindowSize(system_.window(), &width, &height);
     const bool is_over = pointer_.x >= left_ && pointer_.x < static_cast<float>(width) &&
                          pointer_.y >= 0.0F && pointer_.y < static_cast<float>(height) - bottom_;
-    return is_over && !covered_.contains(pointer_) && !is_help_open_ &&
+    const bool is_over_toolbar = pointer_.x < toolbar_.x && pointer_.y < toolbar_.y;
+    return is_over && !covered_.contains(pointer_) && !is_over_toolbar && !help_.is_open() &&
            !ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
 }
 
@@ -344,6 +291,7 @@ bool UserInterface::is_second_click() {
 }
 
 void UserInterface::on_button(int button, bool is_down, int modifiers) {
+    has_drag_end_ |= !is_down;
     drag_ = Drag::none;
     has_release_ |= !is_down;
     if (!is_down && pressed_at_ && glm::distance(*pressed_at_, pointer_) < click_reach)
@@ -352,6 +300,15 @@ void UserInterface::on_button(int button, bool is_down, int modifiers) {
     if (!is_down || !is_on_picture()) return;
     if (button == GLFW_MOUSE_BUTTON_LEFT && is_on_line()) {
         drag_ = Drag::line;
+        return;
+    }
+    const Handle* const handle = handle_at(pointer_);
+    if (button == GLFW_MOUSE_BUTTON_LEFT && modifiers == 0 && handle != nullptr) {
+        if (handle->axis) return pressed_.push_back(*handle->axis);
+        drag_ = Drag::light;
+        dragged_light_ = handle->light;
+        light_drag_.reset();
+        moves_.push_back({Drag::light, {}, 0.0F, pointer_});
         return;
     }
     if (button == GLFW_MOUSE_BUTTON_LEFT && modifiers == 0) pressed_at_ = pointer_;
@@ -406,19 +363,126 @@ std::optional<glm::ivec2> UserInterface::pixel_at(const glm::vec2& place,
     return is_inside ? std::optional(pixel) : std::nullopt;
 }
 
-void UserInterface::apply(const Move& move, ViewerState& state) const {
+void UserInterface::apply(const Move& move, ViewerState& state) {
     const ImGuiIO& io = ImGui::GetIO();
     const glm::vec2 scale = vec(io.DisplayFramebufferScale);
     const glm::vec2 moved = move.pixels * scale;
     const int height = state.view().y;
     if (move.drag == Drag::orbit) return orbit_by(state.camera(), moved, height);
     if (move.drag == Drag::pan) return pan_by(state.camera(), moved, height);
+    if (move.drag == Drag::light) return drag_light(state, on_view(move.place, state));
     if (move.drag == Drag::lights) return state.orbit_lights(moved);
     if (move.drag == Drag::environment) return state.turn_environment(moved.x);
     if (move.drag == Drag::aim) return state.aim(on_view(move.place, state));
     const bool is_drag = move.drag == Drag::zoom;
     const glm::vec2 pointer = is_drag ? glm::vec2(0.0F) : on_view(move.place, state);
     zoom_by(state.camera(), is_drag ? -drag_zoom * moved.y : move.steps, pointer, state.sphere());
+}
+
+const UserInterface::Handle* UserInterface::handle_at(const glm::vec2& place) const {
+    const float reach = handle_reach * scale_.layout;
+    const Handle* nearest = nullptr;
+    float smallest = reach;
+    for (const Handle& handle : handles_) {
+        const float distance = glm::distance(place, handle.place);
+        if (distance > smallest) continue;
+        smallest = distance;
+        nearest = &handle;
+    }
+    return nearest;
+}
+
+void UserInterface::drag_light(ViewerState& state, const glm::vec2& pointer) {
+    std::vector<LightRow> rows = state.light_rows();
+    const auto row = std::find_if(rows.begin(), rows.end(),
+                                  [&](const LightRow& one) { return one.id == dragged_light_; });
+    if (row == rows.end()) return;
+    const Camera camera = camera_of(state.camera(), state.sphere());
+    if (!light_drag_) {  // The press, which moves nothing.
+        light_drag_.emplace(row->light, camera, state.sphere(), pointer);
+        return;
+    }
+    row->light = light_drag_->moved(row->light, camera, state.sphere(), pointer);
+    state.set_light_rows(std::move(rows));
+}
+
+/// Draws the axes of the world in the upper right corner.
+void UserInterface::draw_axes(const PanelInput& input, const ViewPlace& place) {
+    const float unit = scale_.layout;
+    const glm::vec2 size = place.max - place.min;
+    constexpr float smallest_view = 160.0F;
+    if (!input.layout.has_axes || !input.state.has_scene()) return;
+    if (std::min(size.x, size.y) < smallest_view * unit) return;
+    const float length = 30.0F * unit;
+    const float radius = 8.0F * unit;
+    const glm::vec2 center(place.max.x - 2.0F * length + 8.0F * unit,
+                           place.min.y + 2.0F * length - 8.0F * unit +
+                               (toolbar_.x + 4.0F * length > size.x ? toolbar_.y : 0.0F));
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    static constexpr std::array<ImU32, 3> colors{
+        IM_COL32(228, 80, 80, 255), IM_COL32(120, 190, 60, 255), IM_COL32(80, 140, 240, 255)};
+    const auto is_hovered = [&](Action action) {
+        return pointed_ && pointed_->axis && *pointed_->axis == action;
+    };
+    for (const AxisEnd& end : axis_ends(input.state.camera())) {
+        const glm::vec2 at = center + length * glm::vec2(end.direction.x, -end.direction.y);
+        const bool is_positive = end.name[0] == '+';
+        const ImU32 color = colors.at(static_cast<std::size_t>(end.name[1] - 'x'));
+        const ImU32 dark = IM_COL32(24, 26, 30, 210);
+        if (is_positive) list.AddLine(vec(center), vec(at), color, 2.0F * unit);
+        list.AddCircleFilled(vec(at), radius, is_positive ? color : dark);
+        list.AddCircle(vec(at), radius, is_hovered(end.action) ? label_color : color, 0,
+                       is_hovered(end.action) ? 2.0F * unit : 1.5F * unit);
+        if (is_positive || is_hovered(end.action)) {
+            const std::string text(end.name + (is_positive ? 1 : 0));
+            const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
+            list.AddText({at.x - 0.5F * extent.x, at.y - 0.5F * extent.y},
+                         is_positive ? IM_COL32(10, 10, 10, 255) : label_color, text.c_str());
+        }
+        handles_.push_back({at, end.action, 0});
+        probe_place(std::string("axis ") + end.name, at);
+    }
+}
+
+/// Draws a handle for each light while the panel Lights or the light markers are open.
+void UserInterface::draw_lights(const PanelInput& input, const ViewPlace& place) {
+    ViewerState& state = input.state;
+    const auto open = input.layout.open_panels.find("Lights");
+    const bool has_panel =
+        has_open_panels_ && open != input.layout.open_panels.end() && open->second;
+    if (!state.has_scene() || (!has_panel && !state.has_light_markers())) return;
+    const float unit = scale_.layout;
+    const Camera camera = camera_of(state.camera(), state.sphere());
+    const glm::vec2 middle = 0.5F * (place.min + place.max);
+    const auto on_window = [&](const glm::vec2& on_view) {
+        const float half = 0.5F * (place.max.y - place.min.y);
+        return middle + half * glm::vec2(on_view.x, -on_view.y);
+    };
+    const auto center = projected(camera, state.sphere().center);
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    list.PushClipRect(vec(place.min), vec(place.max));
+    const std::vector<LightRow> rows = state.light_rows();
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const auto on_view = projected(camera, handle_of(rows[i].light, state.sphere()));
+        if (!on_view) continue;
+        const glm::vec2 at = on_window(*on_view);
+        const bool is_active = (drag_ == Drag::light && dragged_light_ == rows[i].id) ||
+                               (pointed_ && pointed_->light == rows[i].id);
+        const ImU32 color = is_active ? IM_COL32(255, 240, 160, 255) : IM_COL32(255, 205, 80, 255);
+        const bool is_directional = type_of(rows[i].light) == LightType::directional;
+        if (is_directional && center)
+            list.AddLine(vec(at), vec(on_window(*center)), IM_COL32(255, 205, 80, 110), unit);
+        list.AddCircleFilled(vec(at), 6.0F * unit, color);
+        list.AddCircle(vec(at), 9.0F * unit, IM_COL32(20, 22, 26, 200), 0, 2.0F * unit);
+        if (is_active) {
+            draw_label(fmt::format("Light {}", i + 1),
+                       at + glm::vec2(14.0F * unit, -0.5F * ImGui::GetFontSize()), 0.0F);
+        }
+        handles_.push_back({at, std::nullopt, rows[i].id});
+        probe_place(fmt::format("light handle {}", i + 1), at);
+    }
+    list.PopClipRect();
+    if (pointed_) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
 }
 
 /// Draws one picture, two pictures, or their difference.
@@ -437,6 +501,26 @@ void UserInterface::draw_view(const PanelInput& input, const PictureExchange::Sh
     }
 }
 
+/// Draws the file dialog, and uses the file that was selected.
+void UserInterface::draw_dialog(const PanelInput& input, Events& events) {
+    using Kind = BrowseTarget::Kind;
+    if (events.panels.browse) dialog_.open(std::move(*events.panels.browse));
+    if (!dialog_.is_open()) return;
+    const bool is_input = dialog_.request()->target.kind == Kind::input;
+    const std::vector<std::string>& recent =
+        is_input ? input.layout.recent_files : input.layout.recent_images;
+    const std::optional<BrowseResult> selected =
+        dialog_.draw(recent, input.previews, input.preview_texture);
+    if (!selected) return;
+    if (is_input) return events.dropped.push_back(selected->file);
+    if (selected->target.kind == Kind::map) {
+        input.state.set_map(selected->target.material, selected->target.slot, selected->file);
+    } else {
+        input.state.set_environment(selected->file);
+    }
+    if (input.state.error().empty()) remember_image(input.layout, selected->file);
+}
+
 UserInterface::Events UserInterface::draw(const PanelInput& input,
                                           const PictureExchange::Shown& picture) {
     ImGui_ImplOpenGL3_NewFrame();
@@ -447,14 +531,21 @@ UserInterface::Events UserInterface::draw(const PanelInput& input,
     Events events;
     events.dropped = std::exchange(dropped_, {});
     events.has_input = std::exchange(has_input_, false);
+    // Moves of this frame come first.
+    events.has_released = moves_.empty() && std::exchange(has_drag_end_, false);
     // Dear ImGui overlooks a release that is followed by another press in the same frame.
     if (std::exchange(has_release_, false) && moves_.empty()) input.state.end_edit_step();
-    left_ = input.layout.has_panels ? draw_panels(input, events.panels) : 0.0F;
-    bottom_ = ImGui::GetFrameHeightWithSpacing();
+    const PanelSpace space = input.layout.has_panels
+                                 ? draw_panels(input, are_folded_panels_open_, events.panels)
+                                 : PanelSpace{};
+    left_ = space.left;
+    has_open_panels_ = space.left > 0.0F || space.bottom > 0.0F;
+    toolbar_ = space.toolbar;
+    bottom_ = ImGui::GetFrameHeightWithSpacing() + space.bottom;
     bottom_ += draw_playback(input.state, left_, bottom_);
     draw_status(input, events.panels);
-    if (is_help_open_) draw_help(is_help_open_);
-    if (const auto file = dialog_.draw(input.layout.recent_files)) events.dropped.push_back(*file);
+    help_.draw();
+    draw_dialog(input, events);
     if (events.panels.open) events.dropped.push_back(*events.panels.open);
     input.layout.has_seen_hint |= !moves_.empty();
 
@@ -466,6 +557,15 @@ UserInterface::Events UserInterface::draw(const PanelInput& input,
     ImGui::GetBackgroundDrawList()->AddRectFilled({0.0F, 0.0F}, io.DisplaySize, backdrop);
     const ViewPlace place{{left_, 0.0F}, {io.DisplaySize.x, io.DisplaySize.y - bottom_}};
     draw_view(input, picture, place);
+    const Handle* const handle = is_on_picture() ? handle_at(pointer_) : nullptr;
+    pointed_ = handle != nullptr ? std::optional(*handle) : std::nullopt;
+    handles_.clear();
+    if (picture.texture != 0) {
+        draw_lights(input, place);
+        draw_axes(input, place);
+    } else {
+        draw_waiting(input, place.min, place.max, events.panels);
+    }
     if (picture.texture != 0 && !input.layout.has_seen_hint) draw_hint(place);
     events.pixel = pixel_at(pointer_, input.state);
     if (released_) events.clicked = pixel_at(*released_, input.state);

@@ -68,6 +68,7 @@ class WindowLoop {
           loader_(WindowSystem::wake),
           health_(WindowSystem::wake),
           thumbnails_(WindowSystem::wake),
+          previews_(WindowSystem::wake),
           files_(WindowSystem::wake),
           interface_(system_),
           state_(options),
@@ -98,6 +99,7 @@ class WindowLoop {
             if (was_working && !is_working()) pending_frames_ = frames_to_settle;
             if (system_.is_visible()) draw();
         }
+        system_.hide();  // Threads may need a moment to end.
         // A size from the command line is not stored.
         if (!state_.options().size_given) system_.store_geometry(layout_);
         if (const std::string problem = saved_layout_.save(layout_); !problem.empty())
@@ -119,6 +121,10 @@ class WindowLoop {
         if (std::optional<HealthResult> found = health_.take()) state_.take(std::move(*found));
         if (std::optional<Image> picture = thumbnails_.take())
             drawer_.put_thumbnails(std::move(*picture));
+        if (std::optional<Image> picture = previews_.take()) {
+            drawer_.put_previews(std::move(*picture));
+            pending_frames_ = frames_to_settle;
+        }
         take_changes(files_.take());
     }
 
@@ -147,7 +153,9 @@ class WindowLoop {
         if (state_.is_turning()) {
             WindowSystem::wait(turning_step);
         } else if (is_full_resolution_pending_ && system_.is_visible()) {
-            WindowSystem::wait(0.5 * AdaptiveResolution::idle_seconds);
+            constexpr double drawing_step = 0.02;
+            WindowSystem::wait(
+                std::max(resolution_.seconds_until_rest(glfwGetTime()), drawing_step));
         } else {
             WindowSystem::wait(is_working() ? loading_step : 0.0);
             if (!is_working()) pending_frames_ = frames_to_settle - 1;
@@ -186,8 +194,7 @@ class WindowLoop {
         const bool was_busy = drawer_.is_busy();
         const RenderedPicture drawn = drawer_.drawn();
         files_.follow(drawn);
-        if (drawn.frames > 0 && !is_reduced(drawn.settings))
-            resolution_.set_full_time(drawn.times.draw);
+        note_picture(drawn);
         interface_.set_scale(scale());
         interface_.set_theme(layout_.has_light_theme);
         const PanelInput input{state_,
@@ -207,12 +214,17 @@ class WindowLoop {
                                &accuracy_,
                                &thumbnails_,
                                drawer_.thumbnails(),
-                               &probe_};
+                               &probe_,
+                               &previews_,
+                               drawer_.previews()};
         const UserInterface::Events events = interface_.draw(input, drawer_.shown());
         if (state_.has_scene()) thumbnails_.update(state_.scene());
+        previews_.update();
         // Input may arrive while the panels settle after earlier input.
         if (events.has_input) pending_frames_ = frames_to_settle;
-        if (events.panels.cancel_loading) loader_.cancel();
+        if (events.panels.cancel_loading) cancel();
+        if (events.panels.redraw) state_.refresh();
+        if (events.has_released && !state_.is_turning()) resolution_.end_motion();
         if (events.clicked) probe_.click(*events.clicked);
         if (std::optional<DrawTask> task = probe_.follow(state_.request(), events.pixel))
             drawer_.add(std::move(*task));
@@ -231,7 +243,8 @@ class WindowLoop {
         if (events.panels.save_turn) save(capture_settings_.pictures);
         if (!events.dropped.empty()) drop(events.dropped);
         const bool is_busy = request_picture() || was_busy || is_full_resolution_pending_ ||
-                             health_.is_running() || thumbnails_.is_running();
+                             health_.is_running() || thumbnails_.is_running() ||
+                             previews_.is_running();
         write_state(drawn, is_busy || accuracy_.is_working() || comparison_.is_working() ||
                                saving_.is_running() || probe_.is_working() ||
                                shaders_.edits().is_pending() ||
@@ -243,10 +256,12 @@ class WindowLoop {
         state_.act(action);
         if (action == Action::help) interface_.show_help();
         if (action == Action::open) open();
+        if (action == Action::cancel) cancel();
+        if (action == Action::axis_gizmo) layout_.has_axes = !layout_.has_axes;
         if (action == Action::next_file) open_neighbor(true);
         if (action == Action::previous_file) open_neighbor(false);
         if (action == Action::theme) layout_.has_light_theme = !layout_.has_light_theme;
-        if (action == Action::panels) layout_.has_panels = !layout_.has_panels;
+        if (action == Action::panels) interface_.toggle_panels(layout_);
         if (action == Action::larger_ui) rescale(next_ui_scale(interface_.scale().glyphs, true));
         if (action == Action::smaller_ui) rescale(next_ui_scale(interface_.scale().glyphs, false));
         if (action == Action::reset_ui_scale) rescale(std::nullopt);
@@ -263,12 +278,35 @@ class WindowLoop {
         if (action == Action::paste_camera) paste();
     }
 
+    /// Cancels reading, or else the preparation of a picture.
+    void cancel() {
+        if (loader_.is_loading()) {
+            loader_.cancel();
+            notice_ =
+                fmt::format("Reading {} was cancelled", loading_options_.model.filename().string());
+            pending_frames_ = frames_to_settle;
+        } else if (!drawer_.progress().stage.empty()) {
+            drawer_.cancel();
+        }
+    }
+
+    /// Learns how long pictures take.
+    void note_picture(const RenderedPicture& drawn) {
+        if (drawn.frames == noted_frames_) return;
+        noted_frames_ = drawn.frames;
+        const bool is_first = std::exchange(noted_revision_, drawn.revision) != drawn.revision;
+        shade::FrameSettings full = drawn.settings;
+        full.width = state_.view().x;
+        full.height = state_.view().y;
+        full.samples = state_.options().samples;
+        resolution_.note_picture(drawn.settings, full, drawn.times.draw, is_first);
+    }
+
     /// Shows the file dialog with the folder of the model.
     void open() {
-        const std::filesystem::path& model = loading_options_.model;
-        std::error_code none;
-        interface_.open_dialog(model.has_parent_path() ? model.parent_path()
-                                                       : std::filesystem::current_path(none));
+        interface_.open_dialog({.target = {},
+                                .title = "Open a model, a scene or a map",
+                                .folder = folder_to_browse({}, loading_options_.model)});
     }
 
     void open_neighbor(bool is_next) {
@@ -420,7 +458,8 @@ class WindowLoop {
         const double now = glfwGetTime();
         if (is_moved && requested_ && !request->instead) resolution_.note_motion(now);
         DrawRequest reduced = *request;
-        reduced.settings = resolution_.settings_for(request->settings, now);
+        reduced.settings = resolution_.next_settings(request->settings, requested_settings_,
+                                                     !drawer_.is_busy(), now);
         is_full_resolution_pending_ = is_reduced(reduced.settings);
         const bool is_as_asked = requested_settings_.width == reduced.settings.width &&
                                  requested_settings_.height == reduced.settings.height &&
@@ -479,6 +518,7 @@ class WindowLoop {
     Loader loader_;
     HealthSearch health_;
     Thumbnails thumbnails_;
+    ImagePreviews previews_;
     WatchedFiles files_;
     UserInterface interface_;
     ViewerState state_;
@@ -499,8 +539,10 @@ class WindowLoop {
     std::optional<DrawRequest> requested_;
     AdaptiveResolution resolution_;
     shade::FrameSettings requested_settings_;  ///< Settings of the last request.
-    std::uint64_t reduced_ = 0;                ///< Number of requests with reduced resolution.
-    std::uint64_t relinked_ = 0;               ///< How often the programs were linked again.
+    std::uint64_t noted_frames_ = 0;           ///< Of the last picture whose time is known.
+    std::uint64_t noted_revision_ = 0;
+    std::uint64_t reduced_ = 0;   ///< Number of requests with reduced resolution.
+    std::uint64_t relinked_ = 0;  ///< How often the programs were linked again.
     bool is_full_resolution_pending_ =
         false;  ///< The picture at full resolution is still to be drawn.
     int pending_frames_ = frames_to_settle;

@@ -103,12 +103,16 @@ WindowLayout layout_of(const JsonCursor& document) {
     if (const auto theme = document.find("theme"))
         layout.has_light_theme = theme->text() == "light";
     if (const auto seen = document.find("hint_seen")) layout.has_seen_hint = seen->boolean();
-    if (const auto files = document.find("recent_files")) {
+    if (const auto axes = document.find("axes")) layout.has_axes = axes->boolean();
+    const auto read_files = [&](const char* key, std::vector<std::string>& list) {
+        const auto files = document.find(key);
+        if (!files) return;
         for (const JsonCursor& file : files->elements()) {
-            if (layout.recent_files.size() < max_recent_files)
-                layout.recent_files.push_back(file.text());
+            if (list.size() < max_recent_files) list.push_back(file.text());
         }
-    }
+    };
+    read_files("recent_files", layout.recent_files);
+    read_files("recent_images", layout.recent_images);
     return layout;
 }
 
@@ -133,11 +137,15 @@ ordered_json json_of(const WindowLayout& layout) {
     if (layout.ui_scale) document["scale"] = *layout.ui_scale;
     if (layout.has_light_theme) document["theme"] = "light";
     document["hint_seen"] = layout.has_seen_hint;
-    // JSON cannot hold other names.
-    document["recent_files"] = ordered_json::array();
-    for (const std::string& file : layout.recent_files) {
-        if (is_utf8(file)) document["recent_files"].push_back(file);
-    }
+    if (!layout.has_axes) document["axes"] = false;
+    const auto write_files = [&](const char* key, const std::vector<std::string>& files) {
+        document[key] = ordered_json::array();
+        for (const std::string& file : files) {
+            if (is_utf8(file)) document[key].push_back(file);  // JSON cannot hold other names.
+        }
+    };
+    write_files("recent_files", layout.recent_files);
+    if (!layout.recent_images.empty()) write_files("recent_images", layout.recent_images);
     return document;
 }
 
@@ -150,13 +158,25 @@ std::optional<std::filesystem::path> absolute_path_variable(const char* variable
 
 }  // namespace
 
-void remember_file(WindowLayout& layout, const std::filesystem::path& file) {
+namespace {
+
+void remember(std::vector<std::string>& files, const std::filesystem::path& file) {
     std::error_code failed;
     const std::string path = std::filesystem::absolute(file, failed).lexically_normal().string();
     if (failed) return;
-    std::erase(layout.recent_files, path);
-    layout.recent_files.insert(layout.recent_files.begin(), path);
-    if (layout.recent_files.size() > max_recent_files) layout.recent_files.resize(max_recent_files);
+    std::erase(files, path);
+    files.insert(files.begin(), path);
+    if (files.size() > max_recent_files) files.resize(max_recent_files);
+}
+
+}  // namespace
+
+void remember_file(WindowLayout& layout, const std::filesystem::path& file) {
+    remember(layout.recent_files, file);
+}
+
+void remember_image(WindowLayout& layout, const std::filesystem::path& file) {
+    remember(layout.recent_images, file);
 }
 
 std::optional<std::filesystem::path> interface_font() {
@@ -353,6 +373,10 @@ bool WindowSystem::is_visible() const {
 
 void WindowSystem::close() const {
     glfwSetWindowShouldClose(window_, GLFW_TRUE);
+}
+
+void WindowSystem::hide() const {
+    glfwHideWindow(window_);
 }
 
 void WindowSystem::grow(const glm::ivec2& pixels) const {

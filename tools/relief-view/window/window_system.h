@@ -52,14 +52,19 @@ struct WindowLayout {
     std::optional<float> ui_scale = std::nullopt;  ///< If absent, the screen decides.
     bool has_light_theme = false;
     bool has_seen_hint = false;  ///< The window no longer shows the mouse gestures on the picture.
+    bool has_axes = true;        ///< The axes are shown in the corner of the picture.
     /// Absolute paths of models and scenes, the last one first.
     std::vector<std::string> recent_files = {};
+    /// The same of images: maps and environments.
+    std::vector<std::string> recent_images = {};
 
     friend bool operator==(const WindowLayout&, const WindowLayout&) = default;
 };
 
 /// Moves a file to the front of the recent files, which are at most 10.
 void remember_file(WindowLayout& layout, const std::filesystem::path& file);
+/// The same for the recent images.
+void remember_image(WindowLayout& layout, const std::filesystem::path& file);
 
 /// A proportional font of the system, if there is one: DejaVu Sans.
 std::optional<std::filesystem::path> interface_font();
@@ -149,6 +154,7 @@ class WindowSystem {
     [[nodiscard]] bool is_closing() const;
     [[nodiscard]] bool is_visible() const;  ///< The window is not minimized.
     void close() const;
+    void hide() const;
     /// Changes the window's size by this many pixels, as far as the window manager permits.
     void grow(const glm::ivec2& pixels) const;
     void swap() const;
