@@ -324,7 +324,7 @@ void LevelMaker::choose_sizes(LevelResult& level) {
                 const double of_pixel = command_.error() * mesh.diameter;
                 const double least = std::max({of_pixel / (1.01 * pixels_of_screen()),
                                                distances[i].from_a.max, distances[i].from_b.max});
-                pixels = of_pixel / largest_distance(mesh.surface, surfaces_[i], least);
+                pixels = of_pixel / largest_vertex_distance(mesh.surface, surfaces_[i], least);
             }
             if (found) {
                 if (!is_beyond || pixels < found->pixels) pixels = found->pixels;

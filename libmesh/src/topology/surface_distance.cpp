@@ -197,8 +197,6 @@ struct InteriorSearch {
     const SurfaceSearch& to;
     SearchWork work = 0;
     SearchWork most;
-    double slack = 1.004;      ///< Of squares: what is not told apart, 0.2 %.
-    double enough = 0.0;       ///< Searches end at a triangle within this squared distance.
     bool was_stopped = false;  ///< The work has exceeded `most`.
 
     double largest(const std::array<Probe, 3>& piece, double known, int depth);
@@ -213,6 +211,7 @@ double InteriorSearch::largest(const std::array<Probe, 3>& piece, double known, 
         corner = std::max(corner, probe.nearest.squared);
     const auto is_bounded_by = [&](std::uint32_t candidate) {
         const Corners triangle = to.corners(candidate);
+        constexpr double slack = 1.004;  // Of squares: what is not told apart, 0.2 %.
         const double allowed = std::max(known, corner) * slack;
         return std::all_of(piece.begin(), piece.end(), [&](const Probe& probe) {
             return squared_distance(probe.point, triangle) <= allowed;
@@ -226,13 +225,13 @@ double InteriorSearch::largest(const std::array<Probe, 3>& piece, double known, 
         return corner;
     }
     const glm::dvec3 center = (piece[0].point + piece[1].point + piece[2].point) / 3.0;
-    const NearestTriangle of_center = to.nearest(center, piece[0].nearest.triangle, work, enough);
+    const NearestTriangle of_center = to.nearest(center, piece[0].nearest.triangle, work);
     corner = std::max(corner, of_center.squared);
     if (depth == 0 || is_bounded_by(of_center.triangle)) return corner;
     std::array<Probe, 3> middle;
     for (std::size_t i = 0; i < 3; ++i) {
         middle[i].point = (piece[(i + 1) % 3].point + piece[(i + 2) % 3].point) / 2.0;
-        middle[i].nearest = to.nearest(middle[i].point, of_center.triangle, work, enough);
+        middle[i].nearest = to.nearest(middle[i].point, of_center.triangle, work);
         corner = std::max(corner, middle[i].nearest.squared);
     }
     known = std::max(known, corner);
@@ -289,17 +288,22 @@ Largest largest_of_vertices(const SurfaceSearch& from, const SurfaceSearch& to, 
     return all;
 }
 
+/// Returns the step between the vertices that can be examined.
+///
+/// \param work  the mean work of a search
+std::size_t vertex_step(const SurfaceSearch& from, SearchWork work) {
+    const std::size_t vertices = from.mesh().positions.size();
+    return 1 + static_cast<std::size_t>(work > little_work ? vertices * work / max_work : 0);
+}
+
 /// Computes the maximum distance of vertices and of points inside the triangles.
 ///
 /// \param work  the mean work of a search
-/// \param least  squared distances below it are not told apart
 void measure_maximum(const SurfaceSearch& from, const SurfaceSearch& to, SearchWork work,
-                     DistanceStats& stats, double least = 0.0) {
-    const std::size_t vertices = from.mesh().positions.size();
-    const SearchWork excess = work > little_work ? vertices * work / max_work : 0;
-    const auto step = static_cast<std::size_t>(1 + excess);
+                     DistanceStats& stats) {
+    const std::size_t step = vertex_step(from, work);
     std::vector<NearestTriangle> nearest;
-    const Largest at_vertices = largest_of_vertices(from, to, step, least, nearest);
+    const Largest at_vertices = largest_of_vertices(from, to, step, 0.0, nearest);
     const double of_all = std::max(at_vertices.squared, stats.max * stats.max);
     stats.max = std::sqrt(of_all);
     stats.omitted = at_vertices.omitted;
@@ -308,7 +312,7 @@ void measure_maximum(const SurfaceSearch& from, const SurfaceSearch& to, SearchW
         return;
     }
     // Distances below the rounding of positions are not told apart.
-    const double known = std::max({of_all, to.rounding() * to.rounding(), least});
+    const double known = std::max(of_all, to.rounding() * to.rounding());
     constexpr std::size_t max_pieces = 500'000;
     int depth = 1;
     while (depth < 6 && (from.size() << (2 * depth + 2)) <= max_pieces)
@@ -319,10 +323,6 @@ void measure_maximum(const SurfaceSearch& from, const SurfaceSearch& to, SearchW
         measured_in_pieces<Largest>(from.size(), [&](std::size_t begin, std::size_t end) {
             Largest largest{of_all, 0};
             InteriorSearch search{to, 0, allowed * (end - begin)};
-            // Searches that ended early have found any near triangle: with slack, the result would
-            // depend on which.
-            if (least > 0.0) search.slack = 1.0;
-            search.enough = least;
             for (std::size_t t = begin; t < end; ++t) {
                 check_cancelled();
                 std::array<Probe, 3> piece;
@@ -378,12 +378,15 @@ DistanceStats distances(const SurfaceSearch& from, const SurfaceSearch& to) {
     });
 }
 
-double largest_distance(const SurfaceSearch& from, const SurfaceSearch& to, double least) {
+double largest_vertex_distance(const SurfaceSearch& from, const SurfaceSearch& to, double least) {
     const DistanceStats stats =
         measured_with_little_work(from, to, [&](const SurfaceSearch& surface, SearchWork work) {
-            DistanceStats largest;
-            measure_maximum(from, surface, work, largest, least * least);
-            return largest;
+            std::vector<NearestTriangle> nearest;
+            const Largest largest =
+                largest_of_vertices(from, surface, vertex_step(from, work), least * least, nearest);
+            DistanceStats of_vertices;
+            of_vertices.max = std::sqrt(largest.squared);
+            return of_vertices;
         });
     return std::max(stats.max, least);
 }
@@ -431,7 +434,7 @@ SurfaceDistance sampled_distance(const Mesh& a, const Mesh& b, std::size_t sampl
             random_distances(surface_b, surface_a, samples_b, seed)};
 }
 
-double largest_distance(const Mesh& a, const Mesh& b, double least) {
+double largest_vertex_distance(const Mesh& a, const Mesh& b, double least) {
     validate(a);
     validate(b);
     if (!(least >= 0.0))
@@ -442,7 +445,8 @@ double largest_distance(const Mesh& a, const Mesh& b, double least) {
     surface_a.add_prisms();
     surface_b.add_prisms();
     // The second direction searches only beyond the result of the first.
-    return largest_distance(surface_b, surface_a, largest_distance(surface_a, surface_b, least));
+    return largest_vertex_distance(surface_b, surface_a,
+                                   largest_vertex_distance(surface_a, surface_b, least));
 }
 
 double max_farther_part(std::size_t samples, double confidence) {

@@ -222,34 +222,35 @@ Mesh coarse_sphere(const Mesh& sphere) {
     return decimated(sphere, options).mesh;
 }
 
-TEST(LargestDistance, IsThatOfTheFullMeasurementOrTheLeastOne) {
+TEST(LargestVertexDistance, IsThatOfTheFullMeasurementOrTheLeastOne) {
     const Mesh sphere = test::sphere(96, 48);
     const Mesh coarse = coarse_sphere(sphere);
     const SurfaceDistance full = surface_distance(sphere, coarse);
     const double largest = std::max(full.from_a.max, full.from_b.max);
     // The full measurement stops at 0.1 % of the distance.
     for (const double part : {0.0, 0.1, 0.5, 0.9})
-        EXPECT_NEAR(largest_distance(sphere, coarse, part * largest), largest, 0.002 * largest);
-    EXPECT_EQ(largest_distance(sphere, coarse, 1.01 * largest), 1.01 * largest);
-    EXPECT_EQ(largest_distance(sphere, Mesh{}, 0.25), 0.25);
-    EXPECT_THROW(largest_distance(sphere, coarse, -1.0), InvalidInput);
-    EXPECT_THROW(largest_distance(sphere, coarse, std::numeric_limits<double>::quiet_NaN()),
+        EXPECT_NEAR(largest_vertex_distance(sphere, coarse, part * largest), largest,
+                    0.002 * largest);
+    EXPECT_EQ(largest_vertex_distance(sphere, coarse, 1.01 * largest), 1.01 * largest);
+    EXPECT_EQ(largest_vertex_distance(sphere, Mesh{}, 0.25), 0.25);
+    EXPECT_THROW(largest_vertex_distance(sphere, coarse, -1.0), InvalidInput);
+    EXPECT_THROW(largest_vertex_distance(sphere, coarse, std::numeric_limits<double>::quiet_NaN()),
                  InvalidInput);
 }
 
-TEST(LargestDistance, IsTheSameForAnyOrderOfTriangles) {
+TEST(LargestVertexDistance, IsTheSameForAnyOrderOfTriangles) {
     const Mesh sphere = test::sphere(96, 48);
     const Mesh coarse = coarse_sphere(sphere);
     const SurfaceDistance full = surface_distance(sphere, coarse);
     const double least = 0.5 * std::max(full.from_a.max, full.from_b.max);
-    const double largest = largest_distance(sphere, coarse, least);
+    const double largest = largest_vertex_distance(sphere, coarse, least);
     for (const std::uint32_t seed : {1U, 2U, 3U}) {
         Mesh other = coarse;
         std::shuffle(other.triangles.begin(), other.triangles.end(), std::mt19937(seed));
-        EXPECT_EQ(largest_distance(sphere, other, least), largest);
+        EXPECT_EQ(largest_vertex_distance(sphere, other, least), largest);
         Mesh dense = sphere;
         std::shuffle(dense.triangles.begin(), dense.triangles.end(), std::mt19937(seed));
-        EXPECT_EQ(largest_distance(dense, coarse, least), largest);
+        EXPECT_EQ(largest_vertex_distance(dense, coarse, least), largest);
     }
 }
 

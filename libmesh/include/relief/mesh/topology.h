@@ -176,13 +176,15 @@ SurfaceDistance surface_distance(const Mesh& a, const Mesh& b);
 SurfaceDistance sampled_distance(const Mesh& a, const Mesh& b, std::size_t samples_a,
                                  std::size_t samples_b, std::uint32_t seed = 0);
 
-/// Returns the largest distance in both directions as surface_distance() measures it, or `least` if
-/// all points are within it: where most points are, this is several times faster.
+/// Returns the largest distance of a vertex from the other surface, or `least` if all vertices are
+/// within it. It is many times faster than surface_distance(), which also measures inside
+/// triangles: a point there can be farther, for example where a triangle spans a hole of the other
+/// surface.
 ///
 /// \param a, b  valid (mesh.h). Triangles with a non-finite corner are ignored
 /// \param least  at least 0; the result if one of the surfaces has no triangle
 /// \throws InvalidInput if `least` is negative or not a number
-double largest_distance(const Mesh& a, const Mesh& b, double least);
+double largest_vertex_distance(const Mesh& a, const Mesh& b, double least);
 
 /// Returns the largest part p of the area that is farther than the maximum of random samples, with
 /// a confidence: 1 - p = (1 - confidence)^(1 / samples), because all samples are outside of a part
