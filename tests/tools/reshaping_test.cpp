@@ -116,7 +116,7 @@ TEST(DecimateCommand, MeetsANumberARatioAndReports) {
                                        {"keep_positions", false},
                                        {"weights",
                                         {{"texcoords", 1.0},
-                                         {"normals", 0.005},
+                                         {"normals", 0.02},
                                          {"colors", 0.01},
                                          {"joints", 0.01},
                                          {"targets", 1.0}}},

@@ -641,7 +641,7 @@ void add_decimate_options(CLI::App& app, DecimateCommand& command) {
         app, "--weights", "NAME=W,...",
         "How much differences of attributes count, each at least 0: texcoords, in lengths on "
         "the surface (default: 1); normals, colors and joints (the weights of skins), as the "
-        "fraction of the model's size that a difference of 1 counts (default: 0.005, or 0 with "
+        "fraction of the model's size that a difference of 1 counts (default: 0.02, or 0 with "
         "--for distance; 0.01 and 0.01); targets, displacements by morph targets, as lengths "
         "(default: 1).",
         [&command](const std::string& subject, const std::string& text) {

@@ -27,7 +27,7 @@ struct AttributeWeights {
     double texcoord = 1.0;  ///< In lengths on the surface that the texture moves by.
     /// The distance, relative to the size of the mesh, for which a difference of 1 between normals
     /// counts. Only kept normals count. Where only distances matter, 0 is best.
-    double normal = 0.005;
+    double normal = 0.02;
     double color = 0.01;  ///< The same for a difference of 1 between colors.
     double joint = 0.01;  ///< The same for a difference of 1 between weights of joints.
     double target = 1.0;  ///< Of displacements by morph targets, which are lengths.
