@@ -82,7 +82,7 @@ const std::vector<Gesture>& gestures() {
         {"Ctrl+drag", "Rotate the lights"},
         {"Ctrl+Shift+drag", "Rotate the environment"},
         {"Drag the line", "Move the line between two compared pictures"},
-        {"Click, while pixels are explained", "Pin the pixel, or follow the pointer again"},
+        {"Click (I: explain pixels)", "Pin the pixel, or follow the pointer again"},
         {"Double click", "Set the orbit center to this point"},
         {"Click an axis", "Look along this axis"},
         {"Drag a light", "Move this light; the panel Lights shows the lights"},
