@@ -238,10 +238,11 @@ class CollapseError {
 
     /// Returns what collapses are ordered by. A cost, with its squared error, keeps distances
     /// small, but leaves many triangles where the surface is rough. For pictures, which saturate
-    /// there, the error itself counts: the root mean square times the area that has it.
+    /// there, the root mean square to the power of 1.5 counts, times the area that has it. The
+    /// error itself makes pictures that are as near, with larger errors of small parts.
     [[nodiscard]] double priority(double cost, std::uint32_t vertex, const Move& move) const {
         if (!input_.for_picture) return cost;
-        return std::sqrt(cost * (areas_[vertex] + areas_[move.target]));
+        return std::sqrt(cost * std::sqrt(cost * (areas_[vertex] + areas_[move.target])));
     }
 
     /// Returns whether a cost is within the maximum error.

@@ -34,8 +34,8 @@ struct AttributeWeights {
 };
 
 /// The property of the input that a result keeps, which selects the next collapse: the smallest
-/// error times area, so that pictures of all surfaces differ little; or the smallest squared error
-/// times area, so that distances from the input are small.
+/// error to the power of 1.5 times area, so that pictures of all surfaces differ little; or the
+/// smallest squared error times area, so that distances from the input are small.
 enum class DecimateGoal { picture, distance };
 
 template <>
