@@ -17,6 +17,7 @@
 #include "light_options.h"
 #include "material_options.h"
 #include "option_conflicts.h"
+#include "page_command.h"
 #include "picture_comparison.h"
 #include "picture_sequence.h"
 #include "picture_sink.h"
@@ -37,7 +38,8 @@ void add_output_options(CLI::App& app, ViewOptions& options) {
     add_path(
         app, "--output", options.output,
         "Write the picture to FILE: .png (8 bit, sRGB), .exr (linear float), .apng (animated), or "
-        ".mp4 or .webm (videos, by the program ffmpeg).")
+        ".mp4 or .webm (videos, by the program ffmpeg). .html is a page that draws it in a "
+        "browser.")
         .group(group);
     add_value(app, "--size", "WxH",
               "Set the width and height in pixels; in a window, those of the view. Default: the "
@@ -112,10 +114,10 @@ void check_output(const ViewOptions& options) {
            "--output " + options.output->string(), "an animation needs several pictures",
            "add --turntable or --frames, or write a .png");
     const std::string extension = extension_of(*options.output);
-    constexpr std::array formats = {".png", ".exr", ".apng", ".mp4", ".webm"};
+    constexpr std::array formats = {".png", ".exr", ".apng", ".mp4", ".webm", ".html"};
     refuse(std::find(formats.begin(), formats.end(), extension) == formats.end(),
            "--output " + options.output->string(), "unsupported format",
-           "use .png, .exr, .apng, .mp4 or .webm");
+           "use .png, .exr, .apng, .mp4, .webm or .html");
     require_folder_of(*options.output);
 }
 
@@ -150,6 +152,7 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
     add_exercise_options(app, options);
     add_debug_options(app, options);
     add_probe_options(app, options);
+    add_page_options(app, options);
     const Choices<Backend> backends = {
         {"auto", Backend::automatic}, {"osmesa", Backend::osmesa}, {"egl", Backend::egl}};
     add_choice(app, "--backend", options.backend, backends,
@@ -191,6 +194,7 @@ void settle(ViewOptions& options) {
     check_environment(options);
     check_debug_options(options);
     check_probe_options(options);
+    check_page(options);
 }
 
 }  // namespace relief::tools

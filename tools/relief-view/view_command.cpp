@@ -16,6 +16,7 @@
 #include "common/summary.h"
 #include "effect_options.h"
 #include "exercise.h"
+#include "page_command.h"
 #include "picture_comparison.h"
 #include "picture_sequence.h"
 #include "picture_sink.h"
@@ -151,6 +152,19 @@ Summary summary_of(const ViewOptions& options, const ComposedScene& composed, co
     return summary;
 }
 
+void add_page(Summary& summary, const ViewOptions& options, const WrittenPage& page) {
+    summary.add("page",
+                fmt::format("{}, {}, {}", counted(page.pictures, "picture"),
+                            counted(page.programs, "program"), counted(page.textures, "texture")),
+                {{"page",
+                  {{"output", options.output->string()},
+                   {"bytes", page.bytes},
+                   {"pictures", page.pictures},
+                   {"programs", page.programs},
+                   {"textures", page.textures}}}});
+    summary.add("wrote", file_and_size(*options.output));
+}
+
 OutputCoding coding_of(const ViewOptions& options) {
     return is_linear_output(options) ? OutputCoding::linear : OutputCoding::srgb;
 }
@@ -280,7 +294,10 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
     if (options.probe) probed = probed_pixel(options, composed, settings, stages, report);
     std::optional<Drawn> drawn;
     std::vector<DrawnStep> steps;
-    if (options.steps) {
+    std::optional<WrittenPage> page;
+    if (is_page(options)) {
+        page = write_page(options, settings, composed, stages, report);
+    } else if (options.steps) {
         steps = draw_steps(options, settings, composed, stages, report);
     } else if (options.output || options.reference || options.effects.measures()) {
         drawn = draw(options, settings, composed, plan, stages, report);
@@ -294,13 +311,14 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
     Summary summary =
         summary_of(options, composed, plan, drawn ? &*drawn : nullptr, markers, findings, stages);
     if (!steps.empty()) add_steps(summary, options, steps);
+    if (page) add_page(summary, options, *page);
     if (options.json) {
         if (options.explain_effects)
             summary.add_part("effects", effect_summary(composed.scene(), plan));
         if (probed) summary.add_part("", probe_summary(*probed, composed.scene()));
         if (options.effects.print_shaders) summary.add_json({{"shaders", shaders_json(plan)}});
         print_json(summary.json());
-    } else if ((drawn || !steps.empty()) && !options.general.quiet) {
+    } else if ((drawn || page || !steps.empty()) && !options.general.quiet) {
         if (probed || options.explain_effects || options.effects.print_shaders) print_text("\n");
         summary.print();
     }
@@ -336,6 +354,7 @@ Command add_view_command(CLI::App& tool) {
          "--output out/sides.png",
          "relief-view data/scenes/environment-mapping.json --steps --output out/steps.png --size "
          "240x160",
+         "relief-view data/vase.obj --material gold --output out/vase.html",
          "relief-view data/vase.obj --material gold --light point:2,2,2,4 --save-scene "
          "out/golden.json",
          "relief-view data/vase.obj --size 640x480 --probe 320,240",

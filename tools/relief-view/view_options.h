@@ -184,6 +184,7 @@ struct ViewOptions {
     bool explain_effects = false;
     EffectChoices effects;
     DebugChoices debug;
+    std::vector<shade::DebugView> page_views;  ///< --page-views
     CompareChoices compare;
     bool json = false;
     bool strict = false;

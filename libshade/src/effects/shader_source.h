@@ -85,6 +85,11 @@ SurfaceProgram pass_program(std::string_view file, const ShaderSteps& steps,
                             GlslVersion version = GlslVersion::core_330,
                             const ShaderTexts& texts = {});
 
+/// Returns the program after a change of the steps of its fragment stage.
+SurfaceProgram surface_program_with(const Features& features, GlslVersion version,
+                                    void (*change)(ShaderSteps& fragment),
+                                    const ShaderTexts& texts = {});
+
 /// The part with the main() of each stage, and the parts that are chosen for its steps.
 struct ChosenSteps {
     std::string_view vertex_main = "surface.vert.glsl";

@@ -118,7 +118,14 @@ ShaderListing listing_of(const Features& features, const ShaderTexts& texts) {
 
 SurfaceProgram detail::surface_program(const Features& features, GlslVersion version,
                                        const ShaderTexts& texts) {
-    const ChosenSteps chosen = chosen_steps(features);
+    return surface_program_with(features, version, nullptr, texts);
+}
+
+SurfaceProgram detail::surface_program_with(const Features& features, GlslVersion version,
+                                            void (*change)(ShaderSteps& fragment),
+                                            const ShaderTexts& texts) {
+    ChosenSteps chosen = chosen_steps(features);
+    if (change != nullptr) change(chosen.fragment);
     const ShaderConstants constants =
         light_count(features) > 0 ? light_constants(features) : ShaderConstants{};
     // The stage that computes the lights.

@@ -45,6 +45,9 @@ class GpuMesh {
     GpuMesh(const gl::Api& api, const Mesh& mesh, const PlannedStreams& streams,
             std::vector<std::uint32_t> source_vertex = {});
 
+    /// Binds the vertex array.
+    void bind(const gl::Api& api) const { api->BindVertexArray(vertices_.name()); }
+
     /// Draws a run of triangles with the current program.
     void draw(const gl::Api& api, const MaterialRange& range) const;
 

@@ -22,13 +22,23 @@ gl::ColorFormat format_of(OutputCoding coding) {
     }
 }
 
-/// Returns the background as displayed, linear.
+}
+
+}  // namespace
+
 glm::vec4 shown_background(const glm::vec4& background, OutputCoding output) {
     if (output == OutputCoding::linear) return background;
     return {glm::min(glm::vec3(background), glm::vec3(1.0F)), background.a};
 }
 
-}  // namespace
+glm::vec4 clear_color(const glm::vec4& background, OutputCoding output) {
+    glm::vec4 color = shown_background(background, output);
+    if (output == OutputCoding::srgb) {
+        for (int i = 0; i < 3; ++i)
+            color[i] = srgb_from_linear(color[i]);
+    }
+    return color;
+}
 
 OutputCoding drawn_coding(const FrameSettings& settings, bool finishes) {
     if (!finishes || settings.output == OutputCoding::linear) return settings.output;
@@ -60,14 +70,7 @@ Picture::Picture(const gl::Api& api, TargetPool& targets, ProgramCache& programs
 
 void Picture::begin() const {
     samples_->bind();
-    glm::vec4 color(0.0F);
-    if (!finishing_) {
-        color = background_;
-        if (output_ == OutputCoding::srgb) {
-            for (int i = 0; i < 3; ++i)
-                color[i] = srgb_from_linear(color[i]);
-        }
-    }
+    const glm::vec4 color = finishing_ ? glm::vec4(0.0F) : clear_color(background_, output_);
     const gl::Api& gl = *api_;
     gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     gl->DepthMask(GL_TRUE);

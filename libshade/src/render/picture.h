@@ -44,6 +44,12 @@ class TargetPool {
     std::vector<Entry> targets_;
 };
 
+/// Returns the background as displayed, linear.
+glm::vec4 shown_background(const glm::vec4& background, OutputCoding output);
+
+/// Returns the color to which the target of a picture without a finishing pass is cleared.
+glm::vec4 clear_color(const glm::vec4& background, OutputCoding output);
+
 /// Returns the encoding that surfaces write: that of the picture, or linear for the finishing pass.
 OutputCoding drawn_coding(const FrameSettings& settings, bool finishes);
 

@@ -68,7 +68,7 @@ gl::LinkedProgram link(const gl::Api& api, const std::string& name, const Shader
     }
 }
 
-void check_texture_units(const PlannedInterface& planned, int available) {
+void check_texture_units(const PlannedInterface& planned, int available, std::string_view where) {
     std::vector<std::string> samplers = planned.samplers;
     std::erase_if(samplers, [](const std::string& name) {
         return std::any_of(texture_units.begin(), texture_units.end(), [&](const auto& row) {
@@ -78,9 +78,8 @@ void check_texture_units(const PlannedInterface& planned, int available) {
     const std::size_t needed = samplers.size();
     if (needed <= static_cast<std::size_t>(available)) return;
     throw GpuError(
-        fmt::format("a surface needs {} textures at once, and a shader of this OpenGL driver can "
-                    "sample {}: {}",
-                    needed, available, fmt::join(samplers, ", ")));
+        fmt::format("a surface needs {} textures at once, and a shader of {} can sample {}: {}",
+                    needed, where, available, fmt::join(samplers, ", ")));
 }
 
 std::shared_ptr<const DrawProgram> ProgramCache::get(const Features& features) {

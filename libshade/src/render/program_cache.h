@@ -66,8 +66,10 @@ constexpr bool is_vertex_texture(TextureUnit unit) {
 
 /// Checks that a program does not sample more textures than a fragment shader can. OpenGL 3.3
 /// guarantees 16; surfaces with nearly all textures of glTF's extensions need more.
+/// \param where  for the message
 /// \throws GpuError with the names of the samplers
-void check_texture_units(const PlannedInterface& planned, int available);
+void check_texture_units(const PlannedInterface& planned, int available,
+                         std::string_view where = "this OpenGL driver");
 
 class ProgramCache {
   public:

@@ -36,6 +36,7 @@
 #include "render/overlays.h"
 #include "render/picture.h"
 #include "render/program_cache.h"
+#include "render/renderer_parts.h"
 #include "render/textures.h"
 #include "scene/scene_parts.h"
 
@@ -43,74 +44,7 @@ namespace relief::shade {
 using namespace relief::detail;
 using namespace relief::shade::detail;
 
-/// The resources that renderers of one context share.
-struct RenderCache::Implementation {
-    explicit Implementation(const gl::Api& api)
-        : programs(api), meshes(api), textures(api), environments(api), targets(api) {}
-
-    ProgramCaches programs;
-    MeshCache meshes;
-    TextureCache textures;
-    EnvironmentCache environments;
-    TargetPool targets;
-    SheenCache sheens;
-};
-
 namespace {
-
-/// The values and textures that the draws of a mesh with one material and the same effects share.
-struct Surface {
-    DrawValues values;  ///< Without those of instances and cameras.
-    std::array<BoundTexture, texture_slot_count> textures;  ///< By TextureSlot.
-    bool both_sides = false;
-    bool casts_shadow = false;
-};
-
-/// The mesh, the material and the planned effects.
-using SurfaceKey = std::tuple<std::size_t, std::optional<std::uint32_t>, Features>;
-
-/// The resources and state of a draw. There may be hundreds of thousands.
-struct Draw {
-    std::shared_ptr<const DrawProgram> program;
-    Features features;
-    std::size_t planned = 0;  ///< Index into the draws of the plan.
-    std::size_t instance = 0;
-    std::size_t mesh = 0;
-    MaterialRange range;
-    const Surface* surface = nullptr;
-    glm::mat4 world_from_object{1.0F};
-    std::shared_ptr<SortedTriangles> sorted;  ///< Only for blended draws.
-};
-
-/// The mesh, the first triangle and the number of triangles.
-using SortedKey = std::tuple<std::size_t, std::uint32_t, std::uint32_t>;
-
-bool is_blended(const Draw& draw) {
-    return draw.features.alpha == AlphaMode::blend;
-}
-
-/// True for surfaces that are part of the transmission background.
-bool is_covering(const Draw& draw) {
-    return !is_blended(draw) && !transmits(draw.features);
-}
-
-/// The scene objects that the plan of a draw refers to.
-struct Planned {
-    const Features& features;
-    const Material& material;
-    const Mesh& mesh;
-};
-
-Planned planned(const Scene& scene, const DrawPlan& draw) {
-    return {draw.features,
-            draw.range.material ? scene.materials[*draw.range.material] : default_material(),
-            scene.meshes[scene.instances[draw.instance].mesh]};
-}
-
-ImagePurpose purpose_of(const UsedTexture& used) {
-    const TextureSlotInfo& slot = slot_info(used.slot);
-    return {slot.use, slot.neutral == NeutralTexel::flat, used.slot == TextureSlot::bump};
-}
 
 /// Returns the texture of an effect that is forced on without one.
 BoundTexture neutral_texture(TextureCache& textures, NeutralTexel texel) {
@@ -221,72 +155,8 @@ std::array<std::size_t, 4> object_counts(const Scene& scene) {
 
 }  // namespace
 
-struct Renderer::Implementation {
-    /// \param given  the shared cache; null: the renderer has its own
-    Implementation(const Context& context, const Scene& scene, FramePlan frame_plan,
-                   const FrameSettings& settings, RenderCache* given, Report& report);
-
-    void prepare_meshes(const Scene& scene, Report& report);
-    void check_meshes(const Scene& scene) const;
-    void replace_meshes(const Scene& scene);
-    void prepare_draws(const Scene& scene, ProgressStage& stage);
-    Surface prepare_surface(const Scene& scene, const Planned& p);
-    Draw prepare_draw(const Scene& scene, std::size_t planned_draw);
-    void follow_poses(const Scene& scene);
-    void upload_poses(const Scene& scene);
-    void bind_planned_textures(Surface& surface, const Planned& p);
-    std::shared_ptr<SortedTriangles> sorted_triangles(const Scene& scene, const Draw& draw);
-    void set_environment_values(DrawValues& values) const;
-    void move(const Scene& scene);
-    void bind_textures(const Draw& draw) const;
-    void set_state(const Draw& draw) const;
-    void use_program(const DrawProgram& program, const Draw& draw, const glm::dmat4& to_clip,
-                     const Camera* camera) const;
-    void issue(Draw& draw, const glm::dmat4& to_clip, const Camera& camera);
-    void draw_range(const Draw& draw);
-    void in_bands(const std::function<void()>& draw_band);
-    [[nodiscard]] int rows_per_band() const;
-    void issue_blended(const glm::dmat4& to_clip, const Camera& camera);
-    void count_fragments() const;
-    void draw_overlays(const glm::dmat4& to_clip) const;
-    void prepare_shadow(const Scene& scene);
-    void draw_shadow_maps();
-    void draw_frame(const Camera& camera);
-
-    const gl::Api& api;
-    std::unique_ptr<RenderCache> own;  ///< If none was given.
-    RenderCache::Implementation& cache;
-    std::shared_ptr<const ShaderTexts> shaders;  ///< Kept for the programs.
-    ProgramCache& linked;
-    FramePlan plan;
-    std::array<std::size_t, 4> counts;
-    FrameTimes times;
-    Picture picture;
-    std::set<Features> programs;
-    SceneTextures textures;
-    LightStorage lights;
-    std::map<std::size_t, std::shared_ptr<GpuMesh>> meshes;  ///< Drawn meshes by index.
-    std::map<std::size_t, PlannedStreams> streams;           ///< What they hold.
-    std::map<std::size_t, Shared<Mesh>::Identity> drawn;     ///< The meshes that they were made of.
-    std::map<SurfaceKey, Surface> surfaces;
-    std::map<SortedKey, std::shared_ptr<SortedTriangles>> sorted;  ///< Of meshes at rest.
-    std::vector<Draw> draws;                                       ///< Opaque ones first.
-    std::map<std::size_t, GpuPose> poses;                          ///< Of deformed instances.
-    std::map<std::size_t, GpuOpenShares> open_shares;              ///< Of instances that need them.
-    std::optional<EnvironmentMaps> environment;
-    std::optional<Skybox> skybox;
-    std::unique_ptr<OverlayDrawing> overlays;  ///< If any is requested.
-    bool counts_fragments;                     ///< For the overdraw view.
-    std::optional<ShadowView> shadow;          ///< If the plan has shadow maps.
-    std::optional<gl::DepthLayers> shadow_maps;
-    bool has_old_shadow = false;             ///< The maps show an earlier scene, or none.
-    std::size_t triangle_total = 0;          ///< Of all draws.
-    std::uint32_t unfinished_triangles = 0;  ///< Drawn since OpenGL was waited for.
-};
-
-Renderer::Implementation::Implementation(const Context& context, const Scene& scene,
-                                         FramePlan frame_plan, const FrameSettings& settings,
-                                         RenderCache* given, Report& report)
+PreparedScene::PreparedScene(const Context& context, const Scene& scene, FramePlan frame_plan,
+                             const FrameSettings& settings, RenderCache* given, Report& report)
     : api(context.api()),
       own(given == nullptr ? std::make_unique<RenderCache>(context) : nullptr),
       cache((given == nullptr ? *own : *given).implementation()),
@@ -330,7 +200,7 @@ Renderer::Implementation::Implementation(const Context& context, const Scene& sc
     times.prepare = 1e3 * stopwatch.lap();
 }
 
-void Renderer::Implementation::prepare_meshes(const Scene& scene, Report& report) {
+void PreparedScene::prepare_meshes(const Scene& scene, Report& report) {
     std::set<std::pair<std::size_t, Features>> added;
     for (const DrawPlan& draw : plan.draws) {
         const std::size_t mesh = scene.instances[draw.instance].mesh;
@@ -346,7 +216,7 @@ void Renderer::Implementation::prepare_meshes(const Scene& scene, Report& report
 }
 
 /// Checks that meshes that were replaced are valid, and that draws have all of their triangles.
-void Renderer::Implementation::check_meshes(const Scene& scene) const {
+void PreparedScene::check_meshes(const Scene& scene) const {
     for (const auto& [index, identity] : drawn) {
         if (index >= scene.meshes.size())
             throw InvalidInput("a moved scene must have the same meshes as before");
@@ -362,7 +232,7 @@ void Renderer::Implementation::check_meshes(const Scene& scene) const {
 }
 
 /// Uploads the meshes that are not those of the last picture.
-void Renderer::Implementation::replace_meshes(const Scene& scene) {
+void PreparedScene::replace_meshes(const Scene& scene) {
     bool has_changed = false;
     for (auto& [index, identity] : drawn) {
         const Shared<Mesh>& mesh = scene.meshes.at(index);
@@ -383,8 +253,8 @@ void Renderer::Implementation::replace_meshes(const Scene& scene) {
 
 /// Returns the triangles of a blended draw at their deformed positions. Draws of a mesh at rest
 /// share them.
-std::shared_ptr<SortedTriangles> Renderer::Implementation::sorted_triangles(const Scene& scene,
-                                                                            const Draw& draw) {
+std::shared_ptr<SortedTriangles> PreparedScene::sorted_triangles(const Scene& scene,
+                                                                 const Draw& draw) {
     if (is_deformed(draw.features)) {
         return std::make_shared<SortedTriangles>(deformed_mesh(scene, draw.instance), draw.range);
     }
@@ -394,7 +264,7 @@ std::shared_ptr<SortedTriangles> Renderer::Implementation::sorted_triangles(cons
     return at_rest;
 }
 
-void Renderer::Implementation::prepare_draws(const Scene& scene, ProgressStage& stage) {
+void PreparedScene::prepare_draws(const Scene& scene, ProgressStage& stage) {
     draws.reserve(plan.draws.size());
     for (std::size_t i = 0; i < plan.draws.size(); ++i) {
         if (plan.draws[i].range.triangle_count == 0) continue;
@@ -413,7 +283,7 @@ void Renderer::Implementation::prepare_draws(const Scene& scene, ProgressStage& 
     upload_poses(scene);
 }
 
-Surface Renderer::Implementation::prepare_surface(const Scene& scene, const Planned& p) {
+Surface PreparedScene::prepare_surface(const Scene& scene, const Planned& p) {
     Surface surface;
     surface.both_sides = p.material.double_sided;
     surface.casts_shadow = casts_shadow(p.material);
@@ -427,7 +297,7 @@ Surface Renderer::Implementation::prepare_surface(const Scene& scene, const Plan
     return surface;
 }
 
-Draw Renderer::Implementation::prepare_draw(const Scene& scene, std::size_t planned_draw) {
+Draw PreparedScene::prepare_draw(const Scene& scene, std::size_t planned_draw) {
     const DrawPlan& plan_of_draw = plan.draws[planned_draw];
     const Planned p = planned(scene, plan_of_draw);
     const Instance& instance = scene.instances[plan_of_draw.instance];
@@ -454,7 +324,7 @@ Draw Renderer::Implementation::prepare_draw(const Scene& scene, std::size_t plan
 
 /// Switches draws to the programs for the poses of the scene: a mesh that returns to rest is drawn
 /// without deformation again.
-void Renderer::Implementation::follow_poses(const Scene& scene) {
+void PreparedScene::follow_poses(const Scene& scene) {
     plan_pose(scene, plan);
     for (Draw& draw : draws) {
         const Features& features = plan.draws[draw.planned].features;
@@ -471,7 +341,7 @@ void Renderer::Implementation::follow_poses(const Scene& scene) {
 }
 
 /// Uploads joint matrices and morph weights, and on first use what they deform.
-void Renderer::Implementation::upload_poses(const Scene& scene) {
+void PreparedScene::upload_poses(const Scene& scene) {
     std::map<std::size_t, PlannedDeformation> planned;
     for (const Draw& draw : draws) {
         if (is_deformed(draw.features)) planned[draw.instance].add(draw.program->planned);
@@ -489,7 +359,7 @@ void Renderer::Implementation::upload_poses(const Scene& scene) {
     }
 }
 
-void Renderer::Implementation::bind_planned_textures(Surface& surface, const Planned& p) {
+void PreparedScene::bind_planned_textures(Surface& surface, const Planned& p) {
     for (const UsedTexture& used : used_textures(p.features, p.material, p.mesh)) {
         BoundTexture& bound = surface.textures[static_cast<std::size_t>(used.slot)];
         if (used.texture == nullptr) {
@@ -505,12 +375,12 @@ void Renderer::Implementation::bind_planned_textures(Surface& surface, const Pla
     }
 }
 
-void Renderer::Implementation::set_environment_values(DrawValues& values) const {
+void PreparedScene::set_environment_values(DrawValues& values) const {
     values.blurred_levels = environment->blurred_levels();
     values.irradiance_sh = environment->irradiance_sh();
 }
 
-void Renderer::Implementation::move(const Scene& scene) {
+void PreparedScene::move(const Scene& scene) {
     replace_meshes(scene);
     lights.update(api, scene);
     prepare_shadow(scene);
@@ -520,7 +390,7 @@ void Renderer::Implementation::move(const Scene& scene) {
     if (overlays) overlays->move(scene);
 }
 
-void Renderer::Implementation::bind_textures(const Draw& draw) const {
+void PreparedScene::bind_textures(const Draw& draw) const {
     const auto& textures_of_draw = draw.surface->textures;
     for (std::size_t i = 0; i < textures_of_draw.size(); ++i) {
         if (textures_of_draw[i].texture == 0) continue;
@@ -533,7 +403,7 @@ void Renderer::Implementation::bind_textures(const Draw& draw) const {
     if (draw.features.vertex_occlusion) open_shares.at(draw.instance).bind(api);
 }
 
-void Renderer::Implementation::set_state(const Draw& draw) const {
+void PreparedScene::set_state(const Draw& draw) const {
     if (draw.surface->both_sides) {
         api->Disable(GL_CULL_FACE);
     } else {
@@ -544,8 +414,8 @@ void Renderer::Implementation::set_state(const Draw& draw) const {
 }
 
 /// Sets the uniforms of a draw, except for that of the eye if there is no camera.
-void Renderer::Implementation::use_program(const DrawProgram& program, const Draw& draw,
-                                           const glm::dmat4& to_clip, const Camera* camera) const {
+void PreparedScene::use_program(const DrawProgram& program, const Draw& draw,
+                                const glm::dmat4& to_clip, const Camera* camera) const {
     DrawValues values = draw.surface->values;
     set_place(values, draw.world_from_object);
     set_shadow(values, shadow, draw.world_from_object);
@@ -561,7 +431,7 @@ void Renderer::Implementation::use_program(const DrawProgram& program, const Dra
         set_uniform(program.linked, name, values);
 }
 
-void Renderer::Implementation::issue(Draw& draw, const glm::dmat4& to_clip, const Camera& camera) {
+void PreparedScene::issue(Draw& draw, const glm::dmat4& to_clip, const Camera& camera) {
     use_program(*draw.program, draw, to_clip, &camera);
     bind_textures(draw);
     set_state(draw);
@@ -576,7 +446,7 @@ void Renderer::Implementation::issue(Draw& draw, const glm::dmat4& to_clip, cons
 }
 
 /// Draws the triangles of an opaque draw in pieces, after which the operation can be cancelled.
-void Renderer::Implementation::draw_range(const Draw& draw) {
+void PreparedScene::draw_range(const Draw& draw) {
     const GpuMesh& mesh = *meshes.at(draw.mesh);
     MaterialRange piece = draw.range;
     const std::uint32_t end = piece.first_triangle + piece.triangle_count;
@@ -595,7 +465,7 @@ void Renderer::Implementation::draw_range(const Draw& draw) {
 }
 
 /// Returns the rows of the picture after which the operation can be cancelled.
-int Renderer::Implementation::rows_per_band() const {
+int PreparedScene::rows_per_band() const {
     if (!is_cancellable()) return picture.height();
     const std::size_t samples = picture.sample_total();
     const std::size_t bands =
@@ -606,7 +476,7 @@ int Renderer::Implementation::rows_per_band() const {
 }
 
 /// Calls a function that draws the whole picture for each band of rows.
-void Renderer::Implementation::in_bands(const std::function<void()>& draw_band) {
+void PreparedScene::in_bands(const std::function<void()>& draw_band) {
     const int rows = rows_per_band();
     if (rows >= picture.height()) {
         draw_band();
@@ -622,7 +492,7 @@ void Renderer::Implementation::in_bands(const std::function<void()>& draw_band) 
 }
 
 /// Draws blended surfaces over all others, farthest center first, without writing depth.
-void Renderer::Implementation::issue_blended(const glm::dmat4& to_clip, const Camera& camera) {
+void PreparedScene::issue_blended(const glm::dmat4& to_clip, const Camera& camera) {
     const auto depth = [&](const Draw& draw) {
         const glm::vec3 center(draw.world_from_object * glm::vec4(draw.sorted->center(), 1.0F));
         return glm::dot(center - glm::vec3(camera.world_from_view[3]),
@@ -645,7 +515,7 @@ void Renderer::Implementation::issue_blended(const glm::dmat4& to_clip, const Ca
 }
 
 /// Sets the state that counts fragments: additive blending on black without a depth test.
-void Renderer::Implementation::count_fragments() const {
+void PreparedScene::count_fragments() const {
     api->ClearColor(0.0F, 0.0F, 0.0F, 1.0F);
     api->Clear(GL_COLOR_BUFFER_BIT);
     api->Disable(GL_DEPTH_TEST);
@@ -654,7 +524,7 @@ void Renderer::Implementation::count_fragments() const {
     api->BlendFuncSeparate(GL_ONE, GL_ONE, GL_ZERO, GL_ONE);
 }
 
-void Renderer::Implementation::draw_overlays(const glm::dmat4& to_clip) const {
+void PreparedScene::draw_overlays(const glm::dmat4& to_clip) const {
     std::vector<OverlaySurface> drawn_surfaces;
     for (const Draw& draw : draws) {
         const auto pose = poses.find(draw.instance);
@@ -668,7 +538,7 @@ void Renderer::Implementation::draw_overlays(const glm::dmat4& to_clip) const {
     overlays->draw(to_clip, drawn_surfaces);
 }
 
-void Renderer::Implementation::prepare_shadow(const Scene& scene) {
+void PreparedScene::prepare_shadow(const Scene& scene) {
     if (!plan.shadow_maps) return;
     shadow = shadow_view(scene);
     has_old_shadow = shadow.has_value();
@@ -680,7 +550,7 @@ void Renderer::Implementation::prepare_shadow(const Scene& scene) {
 
 /// Draws both sides of all surfaces that cast shadows into the maps. Their programs compute
 /// positions and the holes of masks only.
-void Renderer::Implementation::draw_shadow_maps() {
+void PreparedScene::draw_shadow_maps() {
     has_old_shadow = false;
     std::vector<std::pair<const Draw*, std::shared_ptr<const DrawProgram>>> casting;
     for (const Draw& draw : draws) {
@@ -703,7 +573,7 @@ void Renderer::Implementation::draw_shadow_maps() {
     api->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
-void Renderer::Implementation::draw_frame(const Camera& camera) {
+void PreparedScene::draw_frame(const Camera& camera) {
     api->Disable(GL_BLEND);
     api->Enable(GL_DEPTH_TEST);
     api->DepthFunc(GL_LEQUAL);
@@ -747,7 +617,7 @@ void Renderer::Implementation::draw_frame(const Camera& camera) {
 namespace {
 
 /// Plans a scene after validation.
-FramePlan checked_plan(const Scene& scene, const FrameSettings& settings, Report& report) {
+FramePlan planned_view(const Scene& scene, const FrameSettings& settings, Report& report) {
     validate(scene);
     return plan_view(scene, settings, plan_effects(scene, settings), report);
 }
@@ -776,10 +646,10 @@ void check_draw(const Scene& scene, const DrawPlan& draw) {
     }
 }
 
-/// Checks that a given plan refers to objects of the scene, and completes it for the frame
-/// settings.
-FramePlan checked_plan(const Scene& scene, FramePlan plan, const FrameSettings& settings,
-                       Report& report) {
+}  // namespace
+
+FramePlan detail::checked_plan(const Scene& scene, FramePlan plan, const FrameSettings& settings,
+                               Report& report) {
     validate(scene);
     for (DrawPlan& draw : plan.draws) {
         check_draw(scene, draw);
@@ -797,12 +667,14 @@ FramePlan checked_plan(const Scene& scene, FramePlan plan, const FrameSettings& 
     return plan_view(scene, settings, std::move(plan), report);
 }
 
-}  // namespace
+struct Renderer::Implementation : PreparedScene {
+    using PreparedScene::PreparedScene;
+};
 
 Renderer::Renderer(const Context& context, const Scene& scene, const FrameSettings& settings,
                    Report& report)
     : implementation_(
-          std::make_unique<Implementation>(context, scene, checked_plan(scene, settings, report),
+          std::make_unique<Implementation>(context, scene, planned_view(scene, settings, report),
                                            drawn_settings(settings), nullptr, report)) {}
 
 Renderer::Renderer(const Context& context, const Scene& scene, FramePlan plan,

@@ -113,6 +113,14 @@ class Samples {
                 continue;
             add_pass("picture", finishing_steps(OutputCoding::linear, scene, samples));
         }
+        ShaderSteps shown;  // Those of pages with several samples.
+        choose_part(shown, "output.glsl#shown");
+        choose_part(shown, "skybox.glsl#sharp");
+        add_pass("skybox", shown);
+        ShaderSteps codes;
+        choose_part(codes, "output.glsl#codes");
+        choose_part(codes, "picture.glsl#one_sample");
+        add_pass("picture", codes);
         ShaderSteps lines = pose_steps(true, true);
         choose_part(lines, "overlay.glsl#one_color");
         add_pass("overlay", lines);

@@ -29,13 +29,14 @@ def programs():
 class Browser:
     """One page at a time. Sizes are in CSS pixels."""
 
-    def __init__(self):
+    def __init__(self, flags=()):
+        """`flags` are further options of the browser."""
         browser, driver = programs()
         self._folder = tempfile.TemporaryDirectory(prefix="relief-browser-")
         self._driver = subprocess.Popen([driver, "--port=0"], stdout=subprocess.PIPE,
                                         stderr=subprocess.DEVNULL, text=True)
         self._base = f"http://127.0.0.1:{self._port()}"
-        options = {"binary": browser, "args": FLAGS + [f"--user-data-dir={self._folder.name}"]}
+        options = {"binary": browser, "args": FLAGS + list(flags) + [f"--user-data-dir={self._folder.name}"]}
         session = self._call("POST", "/session", {"capabilities": {"alwaysMatch": {
             "browserName": "chrome", "goog:chromeOptions": options,
             "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}}})
@@ -64,7 +65,7 @@ class Browser:
         # No proxy: the driver is on this machine.
         opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
         try:
-            with opener.open(request, timeout=60) as answer:
+            with opener.open(request, timeout=600) as answer:
                 return json.load(answer)["value"]
         except urllib.error.HTTPError as error:
             raise RuntimeError(json.load(error)["value"]["message"]) from None
@@ -79,9 +80,9 @@ class Browser:
         """What a JavaScript function body returns; `arguments` are its own."""
         return self._call("POST", "/execute/sync", {"script": script, "args": list(arguments)})
 
-    def wait_for(self, script):
+    def wait_for(self, script, seconds=30):
         """Until a JavaScript function body returns something true."""
-        deadline = time.monotonic() + 30
+        deadline = time.monotonic() + seconds
         while not self.run(script):
             if time.monotonic() > deadline:
                 raise TimeoutError(script)

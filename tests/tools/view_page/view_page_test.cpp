@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pages as text: their code, their policy and their refusals. view_page_test.py compares their
+// pictures with those of the command line in a browser.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+#include "page_writer.h"
+#include "support/labels.h"
+#include "support/shared_data.h"
+#include "tools/workplace.h"
+#include "zlib_stream.h"
+
+namespace relief::tools {
+namespace {
+
+using nlohmann::json;
+using test::ProgramResult;
+using test::Workplace;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(PageScript, HasNoCommentsAndKeepsItsCode) {
+    EXPECT_EQ(without_comments("// Before.\n\n  let a = 1;  // After.\n\tlet b = 'x // y';\n"),
+              "let a = 1;\nlet b = 'x // y';\n");
+    EXPECT_EQ(without_comments("/* One.\n   Two. */\nbody { }\n"), "body { }\n");
+}
+
+TEST(PageScript, IsSmall) {
+    const std::string script = page_script();
+    EXPECT_LT(script.size(), 60'000U);
+    const auto bytes = std::as_bytes(std::span(script.data(), script.size()));
+    EXPECT_LT(relief::detail::zlib_stream(bytes).size(), 20'000U);
+    EXPECT_THAT(script, Not(HasSubstr("import ")));
+    EXPECT_THAT(script, Not(HasSubstr("fetch(")));
+}
+
+TEST(ViewPage, IsOneFileThatLoadsNothing) {
+    const Workplace workplace;
+    const ProgramResult result =
+        workplace.run("relief-view data/vase.obj --output out/vase.html --json --quiet");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(workplace.outputs(), "vase.html");
+    const std::string page = workplace.read("out/vase.html");
+    EXPECT_THAT(page, HasSubstr("default-src 'none'"));
+    EXPECT_THAT(page, HasSubstr("<title>vase.obj</title>"));
+    EXPECT_THAT(page, Not(HasSubstr("https:")));
+    EXPECT_THAT(page, Not(HasSubstr("{{")));
+    const json summary = json::parse(result.out)["page"];
+    EXPECT_EQ(summary["bytes"], page.size());
+    EXPECT_EQ(summary["programs"], 1);
+    EXPECT_EQ(summary["pictures"], 1);
+    EXPECT_LT(page.size(), 1'000'000U) << "the vase needs at most 1 MB";
+}
+
+TEST(ViewPage, IsTheSameForAnyNumberOfThreads) {
+    const Workplace workplace;
+    for (const char* threads : {"1", "3"}) {
+        const ProgramResult result = workplace.run(
+            std::string("relief-view data/vase.obj --environment data/sky --reflectivity 0.3 "
+                        "--quiet --threads ") +
+            threads + " --output out/" + threads + ".html");
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+    }
+    EXPECT_EQ(workplace.read("out/1.html"), workplace.read("out/3.html"));
+}
+
+TEST(ViewPage, RefusesWhatAPageDoesNotHave) {
+    const Workplace workplace;
+    const std::string page = "relief-view data/vase.obj --output out/p.html ";
+    for (const char* option : {"--turntable 4", "--wireframe", "--grid", "--benchmark 3"}) {
+        const ProgramResult result = workplace.run(page + option);
+        EXPECT_EQ(result.exit_code, 2) << option;
+        EXPECT_THAT(result.error, HasSubstr("applies to pictures, not to pages")) << option;
+    }
+    const ProgramResult alone =
+        workplace.run("relief-view data/vase.obj --output out/p.png --page-views diffuse");
+    EXPECT_EQ(alone.exit_code, 2);
+    EXPECT_THAT(alone.error, HasSubstr("--page-views: there is no page"));
+    const ProgramResult unknown = workplace.run(page + "--page-views diffuse,normal");
+    EXPECT_EQ(unknown.exit_code, 2);
+    EXPECT_THAT(unknown.error, HasSubstr("there is no view 'normal'"));
+    EXPECT_EQ(workplace.outputs(), "");
+}
+
+/// Runs view_page_test.py.
+void expect_equal_pictures(const std::string& arguments) {
+    const Workplace workplace;
+    const std::filesystem::path script =
+        test::source_directory() / "tests/tools/view_page/view_page_test.py";
+    const ProgramResult result = workplace.run("python3 -B '" + script.string() +
+                                               "' \"$(command -v relief-view)\" . " + arguments);
+    constexpr int no_browser = 77;
+    if (result.exit_code == no_browser) GTEST_SKIP() << result.error;
+    EXPECT_EQ(result.exit_code, 0) << result.out << result.error;
+}
+
+TEST_LABELS(not_sanitized);
+TEST(ViewPage, WorksInABrowser) {
+    expect_equal_pictures("few");
+}
+
+TEST_LABELS(slow, not_sanitized);
+TEST(ViewPage, ShowsAllScenesInABrowser) {
+    expect_equal_pictures("all '" + test::shared_directory().string() +
+                          "' ViewPage.test_draws_the_same_picture");
+}
+
+}  // namespace
+}  // namespace relief::tools

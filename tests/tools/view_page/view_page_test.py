@@ -1,0 +1,165 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Compares pages with pictures in a headless browser: view_page_test.py TOOL FOLDER few|all [SHARED].
+
+FOLDER is one in which `relief-view data/vase.obj` has its model; `all` also draws the glTF models of
+SHARED. Exits with 77 without a browser (Debian's chromium and chromium-driver). Run by
+view_page_test.cpp.
+"""
+import json
+import pathlib
+import re
+import sys
+import tempfile
+import unittest
+
+import pages
+
+TOOL = FOLDER = SCOPE = SHARED = None
+SIZE = (256, 192)
+# Pixels may differ more than 2 of 255 where a rasterizer decides: at edges of triangles, and where
+# a filter of textures has another precision. FLIP says what is seen of it.
+MAX_FLIP = 0.01
+MAX_SHARE = 0.005
+FEW = ["data/vase.obj --height-map data/bricks-height.png --strength 12",
+       "data/scenes/environment-mapping.json", "data/scenes/pot.glb --samples 1"]
+MODELS = ["AnisotropyStrengthTest", "Avocado", "BoomBox", "BoxTexturedNonPowerOfTwo", "BoxVertexColors",
+          "CesiumMan", "ClearCoatCarPaint", "ClearCoatTest", "Corset", "Duck", "EmissiveStrengthTest", "Fox",
+          "InterpolationTest", "MetalRoughSpheresNoTextures", "MorphPrimitivesTest", "MultiUVTest",
+          "NegativeScaleTest", "NormalTangentMirrorTest", "NormalTangentTest", "OrientationTest",
+          "RiggedFigure", "SimpleMorph", "SimpleSkin", "SpecularTest", "TextureLinearInterpolationTest",
+          "TextureSettingsTest", "TextureTransformTest", "UnlitTest", "VertexColorTest", "WaterBottle"]
+
+
+def cases():
+    if SCOPE == "few":
+        return FEW
+    scenes = sorted(p for p in (FOLDER / "data/scenes").iterdir() if p.suffix in (".json", ".glb"))
+    found = []
+    for name in MODELS if SHARED else []:
+        files = sorted((SHARED / "data/models/gltf" / name).rglob("*.gl*"))
+        found += [str(file) for file in files[:1]]
+    return FEW + [str(scene.relative_to(FOLDER)) for scene in scenes] + found
+
+
+class ViewPage(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.work = pathlib.Path(cls.folder.name)
+        cls.window = pages.open_browser()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.window.close()
+        cls.folder.cleanup()
+
+    def page(self, name, *arguments):
+        file = self.work / name
+        pages.relief_view(TOOL, *arguments, "--output", file)
+        pages.open_page(self.window, file)
+        return file
+
+    def pixels(self, width=96, height=72):
+        return pages.pixels(self.window, width, height)
+
+    def run_in(self, script, *arguments):
+        return self.window.run(f"const page = {pages.ROOT}.relief; {script}", *arguments)
+
+    def test_draws_the_same_picture(self):
+        for case in cases():
+            with self.subTest(case):
+                difference = pages.compared(TOOL, self.window, case.split(), self.work / "case", *SIZE)
+                share = difference["pixels_above"] / (SIZE[0] * SIZE[1])
+                print(f"{difference['max'] * 255:5.0f} {share:9.5f} {difference['flip_mean']:9.5f}  {case}",
+                      flush=True)
+                self.assertLess(difference["flip_mean"], MAX_FLIP)
+                self.assertLess(share, MAX_SHARE)
+
+    def test_loads_nothing(self):
+        self.window.log("performance")
+        file = self.page("alone.html", "data/vase.obj", "--size", "64x64")
+        requests = [a for a in self.window.requests() if not a.startswith(("data:", "blob:"))]
+        self.assertEqual(requests, [file.resolve().as_uri()])
+        self.assertIn("default-src 'none'", file.read_text())
+
+    def test_orbits_zooms_pans_and_returns(self):
+        self.page("orbit.html", "data/vase.obj")
+        first = self.pixels()
+        for key in ["ArrowLeft", "+"]:
+            self.run_in("page.canvas.dispatchEvent(new KeyboardEvent('keydown', {key: arguments[0]}))", key)
+            self.assertNotEqual(self.pixels(), first, key)
+            self.run_in("page.canvas.dispatchEvent(new KeyboardEvent('keydown', {key: 'Home'}))")
+            self.assertEqual(self.pixels(), first)
+        self.run_in("page.pan(10, 0)")
+        self.assertNotEqual(self.pixels(), first)
+        self.run_in("page.part('reset').click()")
+        self.assertEqual(self.pixels(), first)
+
+    def test_survives_the_loss_of_the_context(self):
+        self.page("loss.html", "data/vase.obj", "--height-map", "data/bricks-height.png")
+        first = self.pixels()
+        self.run_in("window.lost = page.painter.gl.getExtension('WEBGL_lose_context'); lost.loseContext()")
+        self.window.wait_for("return document.querySelector('.relief').relief.painter.gl.isContextLost()")
+        self.run_in(f"{pages.ROOT}.dataset.state = ''; setTimeout(() => lost.restoreContext(), 50)")
+        self.window.wait_for(f"return {pages.ROOT}.dataset.state === 'ready'", 120)
+        self.assertEqual(self.pixels(), first)
+
+    def test_plays_only_when_asked(self):
+        self.page("play.html", "data/scenes/illumination.json")
+        self.assertFalse(self.run_in("return page.part('animation').hidden"))
+        first = self.pixels()
+        self.assertFalse(self.run_in("return Boolean(page.isPlaying)"))
+        self.run_in("page.part('play').click()")
+        self.window.wait_for(f"return {pages.ROOT}.relief.scene.time > 0.05")
+        self.run_in("page.part('play').click()")
+        self.assertNotEqual(self.pixels(), first)
+
+    def test_moves_to_a_time_as_the_renderer_does(self):
+        self.page("time.html", "data/scenes/illumination.json")
+        self.run_in("page.moveTo(1.5)")
+        pages.write_png(self.work / "time.png", self.pixels(*SIZE), *SIZE)
+        result = pages.relief_view(TOOL, "data/scenes/illumination.json", "--time", "1.5", "--size",
+                                   "{}x{}".format(*SIZE), "--reference", self.work / "time.png",
+                                   "--max-difference", 255)
+        self.assertLess(result["comparison"]["flip_mean"], MAX_FLIP)
+
+    def test_offers_views(self):
+        self.page("views.html", "data/vase.obj", "--page-views", "shading-normal,diffuse")
+        self.assertEqual(self.run_in("return [...page.part('view').options].map((o) => o.value)"),
+                         ["picture", "shading-normal", "diffuse"])
+        first = self.pixels()
+        self.run_in("const list = page.part('view'); list.value = 'diffuse'; list.dispatchEvent(new Event('change'))")
+        self.assertNotEqual(self.pixels(), first)
+
+    def test_fits_a_phone(self):
+        self.page("phone.html", "data/scenes/illumination.json")
+        self.window.resize(390, 844, is_phone=True)
+        self.assertEqual(self.window.run("return document.scrollingElement.scrollWidth"), 390)
+        self.assertGreater(self.run_in("return page.canvas.getBoundingClientRect().height"), 500)
+        self.window.resize(1280, 900)
+
+    def test_says_what_is_missing(self):
+        file = self.work / "missing.html"
+        pages.relief_view(TOOL, "data/vase.obj", "--size", "64x64", "--output", file)
+        text = file.read_text().replace("getContext('webgl2'", "getContext('webgl9'")
+        file.write_text(text)
+        with self.assertRaisesRegex(RuntimeError, "WebGL 2"):
+            pages.open_page(self.window, file)
+
+    def tearDown(self):
+        # The browser itself reports slow readings of pixels, and the lost context of a test.
+        messages = [entry for entry in self.window.log("browser")
+                    if "ReadPixels" not in entry["message"] and "CONTEXT_LOST" not in entry["message"]]
+        self.assertEqual(messages, [], "the console has messages")
+
+
+if __name__ == "__main__":
+    TOOL, FOLDER, SCOPE = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), sys.argv[3]
+    SHARED = pathlib.Path(sys.argv[4]) if len(sys.argv) > 4 and not sys.argv[4].startswith("-") else None
+    if pages.browser.programs() is None:
+        print("needs chromium and chromedriver", file=sys.stderr)
+        sys.exit(77)
+    import os
+    os.chdir(FOLDER)
+    unittest.main(argv=[sys.argv[0], *sys.argv[4 + (SHARED is not None):]])

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// The data of a page: sections of bytes, and textures in the form in which they are uploaded.
+
+class Data {
+  constructor(page, bytes) {
+    this.page = page;
+    this.bytes = bytes;
+  }
+
+  section(i) {
+    const [offset, length] = this.page.sections[i];
+    return this.bytes.subarray(offset, offset + length);
+  }
+  floats(i) {
+    const bytes = this.section(i);
+    return new Float32Array(bytes.buffer, bytes.byteOffset, bytes.length / 4);
+  }
+  integers(i) {
+    const bytes = this.section(i);
+    return new Uint32Array(bytes.buffer, bytes.byteOffset, bytes.length / 4);
+  }
+
+  // The samples of an image file, as four bytes per texel with row 0 on top, read back from a
+  // texture: a 2D canvas would multiply colors by alpha.
+  async decoded(gl, texture) {
+    const picture = await createImageBitmap(new Blob([this.section(texture.d)]),
+                                            {premultiplyAlpha: 'none', colorSpaceConversion: 'none'});
+    const {width, height} = picture;
+    const name = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, name);
+    gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, picture);
+    const target = gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, name, 0);
+    const samples = new Uint8Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, samples);
+    gl.deleteFramebuffer(target);
+    gl.deleteTexture(name);
+    picture.close();
+    return {width, height, samples};
+  }
+
+  // Four samples per texel of an image that is stored as rows.
+  spread(texture) {
+    const bytes = this.section(texture.d);
+    const from = texture.t === 'floats' ? this.floats(texture.d)
+        : texture.t === 'bits_16' ? new Uint16Array(bytes.buffer, bytes.byteOffset, bytes.length / 2) : bytes;
+    const isByte = from === bytes, one = isByte ? 255 : 1, scale = texture.t === 'bits_16' ? 65535 : 1;
+    const count = texture.w * texture.h, c = texture.c;
+    const samples = isByte ? new Uint8Array(4 * count) : new Float32Array(4 * count);
+    for (let i = 0; i < count; ++i) {
+      const at = (k) => from[c * i + k] / scale;
+      for (let k = 0; k < 3; ++k) samples[4 * i + k] = texture.gray ? at(0) : k < c ? at(k) : 0;
+      samples[4 * i + 3] = c === 4 ? at(3) : texture.gray && c === 2 ? at(1) : one;
+    }
+    return {width: texture.w, height: texture.h, samples};
+  }
+}
+
+// Mip levels by the rule of libmesh/src/image/mip_levels.cpp: a box filter in linear light, with 16
+// bits between levels of 8 bits; odd sizes take three texels.
+
+const light = new Uint16Array(256), code = new Uint8Array(65536);
+const linear = (c) => (c <= 0.04045 ? c / 12.92 : Math.pow((c + 0.055) / 1.055, 2.4));
+for (let c = 0, filled = 0; c < 256; ++c) {
+  light[c] = linear(c / 255) * 65535 + 0.5;
+  const end = c === 255 ? 65536 : Math.ceil(linear((c + 0.5) / 255) * 65535);
+  for (; filled < end; ++filled) code[filled] = c;
+}
+
+function taps(size, i) {
+  if (size === 1) return [[0, 1]];
+  if (size % 2 === 0) return [[2 * i, 0.5], [2 * i + 1, 0.5]];
+  const m = size >> 1;
+  return [[2 * i, (m - i) / size], [2 * i + 1, m / size], [2 * i + 2, (i + 1) / size]];
+}
+
+function* smallerLevels(image, isSrgb) {
+  let {width, height, samples} = image;
+  const isByte = samples instanceof Uint8Array;
+  if (isByte) {
+    const wide = new Uint16Array(samples.length);
+    for (let i = 0; i < wide.length; ++i) wide[i] = isSrgb && i % 4 !== 3 ? light[samples[i]] : samples[i] * 257;
+    samples = wide;
+  }
+  while (width > 1 || height > 1) {
+    const w = Math.max(width >> 1, 1), h = Math.max(height >> 1, 1);
+    const next = new samples.constructor(4 * w * h);
+    const isEven = width % 2 === 0 && height % 2 === 0;
+    const across = Array.from({length: w}, (_, x) => taps(width, x));
+    for (let y = 0; y < h; ++y) {
+      const down = taps(height, y);
+      for (let x = 0; x < w; ++x)
+        for (let k = 0; k < 4; ++k) {
+          let sum = 0;
+          if (isEven) {
+            const at = 4 * (2 * y * width + 2 * x) + k;
+            sum = (samples[at] + samples[at + 4] + samples[at + 4 * width] + samples[at + 4 * width + 4]) / 4;
+          } else {
+            for (const [row, rowWeight] of down)
+              for (const [at, weight] of across[x]) sum += rowWeight * weight * samples[4 * (row * width + at) + k];
+          }
+          next[4 * (y * w + x) + k] = isByte ? sum + 0.5 : sum;
+        }
+    }
+    [width, height, samples] = [w, h, next];
+    let stored = next;
+    if (isByte) {
+      stored = new Uint8Array(next.length);
+      for (let i = 0; i < next.length; ++i)
+        stored[i] = isSrgb && i % 4 !== 3 ? code[next[i]] : (next[i] + 128) / 257;
+    }
+    yield {width, height, samples: stored};
+  }
+}

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The output `relief-view MODEL --output page.html`. Tests: tests/tools/view_page/.
+#pragma once
+
+#include <cstddef>
+
+#include "common/command.h"
+#include "relief/mesh/report.h"
+#include "relief/shade/effects.h"
+#include "relief/shade/frame_settings.h"
+#include "scene_options.h"
+#include "view_options.h"
+
+namespace relief::tools {
+
+void add_page_options(CLI::App& app, ViewOptions& options);
+
+/// Rejects options that do not apply to pages. \throws UsageError
+void check_page(const ViewOptions& options);
+
+/// Returns whether the output is a page.
+bool is_page(const ViewOptions& options);
+
+/// What a page holds.
+struct WrittenPage {
+    std::size_t bytes = 0;
+    std::size_t programs = 0;
+    std::size_t textures = 0;
+    std::size_t pictures = 0;
+};
+
+/// Records the scene and writes the page.
+/// \param settings  of the picture that the command line draws
+/// \throws InvalidInput for scenes that need more than WebGL 2 guarantees
+WrittenPage write_page(const ViewOptions& options, const shade::FrameSettings& settings,
+                       const ComposedScene& composed, Stages& stages, Report& report);
+
+}  // namespace relief::tools
