@@ -41,6 +41,7 @@ class Browser:
             "browserName": "chrome", "goog:chromeOptions": options,
             "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}}})
         self._base += f"/session/{session['sessionId']}"
+        self._call("POST", "/timeouts", {"script": 600_000})  # Machines may be busy.
 
     def _port(self):
         for line in self._driver.stdout:

@@ -107,7 +107,8 @@ TEST(ViewPage, WorksInABrowser) {
 TEST_LABELS(slow, not_sanitized);
 TEST(ViewPage, ShowsAllScenesInABrowser) {
     expect_equal_pictures("all '" + test::shared_directory().string() +
-                          "' ViewPage.test_draws_the_same_picture");
+                          "' ViewPage.test_draws_the_same_picture "
+                          "ViewPage.test_deforms_as_the_renderer_does");
 }
 
 }  // namespace
