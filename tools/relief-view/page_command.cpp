@@ -102,6 +102,10 @@ void add_page_options(CLI::App& app, ViewOptions& options) {
             }
         })
         .group("Debug views");
+    add_switch(app, "--page-quantize", options.page_quantize,
+               "Store the vertices of the page in 16 bits. The summary states the largest error of "
+               "each attribute.")
+        .group("Output");
 }
 
 bool is_page(const ViewOptions& options) {
@@ -113,6 +117,8 @@ void check_page(const ViewOptions& options) {
         refuse(is_page(options) && given, option, "applies to pictures, not to pages", remedy);
     };
     refuse(!is_page(options) && !options.page_views.empty(), "--page-views", "there is no page",
+           "add --output page.html");
+    refuse(!is_page(options) && options.page_quantize, "--page-quantize", "there is no page",
            "add --output page.html");
     const char* const leave = "leave it out";
     refuse_if(options.turntable.has_value(), "--turntable", "leave it out: pages are orbited");
@@ -145,9 +151,11 @@ WrittenPage write_page(const ViewOptions& options, const FrameSettings& settings
     }
     const PageDescription& page = recorder.description();
     return stages.run("write", [&] {
+        const PageQuantization codes = options.page_quantize ? quantized(page) : PageQuantization();
         const std::string text =
             page_html(page, composed, views.names(), options.model.filename().string(),
-                      options.time.value_or(0.0));
+                      options.time.value_or(0.0),
+                      static_cast<double>(options.size.x) / options.size.y, codes);
         if (text.size() > large_page) {
             report.add("page larger than 100 MB", "megabyte", text.size() / 1'000'000,
                        "browsers take long to open it");
@@ -156,7 +164,7 @@ WrittenPage write_page(const ViewOptions& options, const FrameSettings& settings
         relief::detail::write_all(file, std::as_bytes(std::span(text)));
         file.commit();
         return WrittenPage{text.size(), page.programs.size(), page.textures.size(),
-                           page.pictures.size()};
+                           page.pictures.size(), codes.errors};
     });
 }
 

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
+#include <string>
 
 #include "common/command.h"
 #include "relief/mesh/report.h"
@@ -28,6 +30,7 @@ struct WrittenPage {
     std::size_t programs = 0;
     std::size_t textures = 0;
     std::size_t pictures = 0;
+    std::map<std::string, double> quantization;  ///< The errors of attributes, by name.
 };
 
 /// Records the scene and writes the page.

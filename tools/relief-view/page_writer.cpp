@@ -42,9 +42,15 @@ Json json_of(const glm::mat4& m) {
 
 class Sections {
   public:
-    explicit Sections(const PageDescription& page) {
-        for (const std::vector<std::byte>& bytes : page.sections)
-            add(bytes);
+    Sections(const PageDescription& page, const PageQuantization& codes) {
+        for (std::size_t i = 0; i < page.sections.size(); ++i) {
+            const auto quantized = codes.sections.find(i);
+            if (quantized == codes.sections.end()) {
+                add(page.sections[i]);
+            } else {
+                add(quantized->second.codes);
+            }
+        }
     }
 
     std::size_t add(std::span<const std::byte> bytes) {
@@ -497,8 +503,8 @@ std::string page_script() {
 
 std::string page_html(const PageDescription& page, const ComposedScene& composed,
                       const std::vector<PagePictureName>& names, const std::string& title,
-                      double seconds) {
-    Sections sections(page);
+                      double seconds, double aspect, const PageQuantization& codes) {
+    Sections sections(page, codes);
     Json programs = Json::array();
     for (const PageProgram& program : page.programs)
         programs.push_back({{"vertex", without_comments(program.vertex)},
@@ -507,12 +513,17 @@ std::string page_html(const PageDescription& page, const ComposedScene& composed
     for (std::size_t i = 0; i < page.pictures.size(); ++i)
         pictures.push_back(json_of(page.pictures[i], names.at(i)));
     Json json = {{"scene", scene_json(composed, seconds, sections)},
+                 {"aspect", aspect},
                  {"pictures", pictures},
                  {"surfaces", list_of(page.surfaces)},
                  {"meshes", list_of(page.meshes)},
                  {"textures", list_of(page.textures)},
                  {"samplers", list_of(page.samplers)},
                  {"programs", programs}};
+    json["quantized"] = Json::object();
+    for (const auto& [section, quantized] : codes.sections)
+        json["quantized"][std::to_string(section)] = {{"min", quantized.min},
+                                                      {"max", quantized.max}};
     json["sections"] = sections.places();
     const std::string text = json.dump();
     std::string bytes(4, '\0');

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "page_quantize.h"
 #include "relief/shade/page.h"
 #include "scene_options.h"
 
@@ -24,15 +25,11 @@ struct PagePictureName {
 /// Returns the text of the page.
 /// \param composed  the scene at the time of the pictures
 /// \param names     of the pictures, in their order
+/// \param aspect    width / height of the picture; narrower windows show as much to the sides
+/// \param codes     vertex attributes that replace those of the description
 std::string page_html(const shade::PageDescription& page, const ComposedScene& composed,
                       const std::vector<PagePictureName>& names, const std::string& title,
-                      double seconds);
-
-/// The size of the page's own code, and what of it is data.
-struct PageSize {
-    std::size_t bytes = 0;
-    std::size_t code = 0;
-};
+                      double seconds, double aspect, const PageQuantization& codes = {});
 
 /// Returns a script or style sheet without comments, indentation and empty lines.
 std::string without_comments(std::string_view code);

@@ -161,7 +161,12 @@ void add_page(Summary& summary, const ViewOptions& options, const WrittenPage& p
                    {"bytes", page.bytes},
                    {"pictures", page.pictures},
                    {"programs", page.programs},
-                   {"textures", page.textures}}}});
+                   {"textures", page.textures},
+                   {"quantization", Json(page.quantization)}}}});
+    std::string errors;
+    for (const auto& [attribute, error] : page.quantization)
+        errors += fmt::format("{}{} {:.2g}", errors.empty() ? "" : ", ", attribute, error);
+    if (!errors.empty()) summary.add("quantized", "errors at most: " + errors);
     summary.add("wrote", file_and_size(*options.output));
 }
 

@@ -185,6 +185,7 @@ struct ViewOptions {
     EffectChoices effects;
     DebugChoices debug;
     std::vector<shade::DebugView> page_views;  ///< --page-views
+    bool page_quantize = false;                ///< --page-quantize
     CompareChoices compare;
     bool json = false;
     bool strict = false;

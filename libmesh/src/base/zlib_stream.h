@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Compressed data for programs that read zlib streams, such as browsers.
-/// Tests: tests/mesh/io/zlib_stream_test.cpp.
+/// Tests: tests/tools/view_page/view_page_test.cpp.
 #pragma once
 
 #include <cstddef>

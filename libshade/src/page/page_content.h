@@ -2,7 +2,7 @@
 /// \file
 /// What the pictures of a page share, each stored once: sections, textures, samplers, programs,
 /// meshes and surfaces. Textures and buffers are read back from OpenGL, image files are taken as
-/// the scene has them. Tests: tests/shade/page/page_recorder_test.cpp.
+/// the scene has them. Tests: tests/tools/view_page/view_page_test.cpp.
 #pragma once
 
 #include <cstddef>

@@ -2,7 +2,7 @@
 // Records what drawing has prepared: it binds each draw as drawing does, and asks OpenGL what is
 // bound. Programs are assembled again as GLSL ES. Prepared scenes stay alive while a page is
 // recorded, because the names of OpenGL tell which textures and buffers are the same. Tests:
-// tests/shade/page/page_recorder_test.cpp, tests/tools/view_page/.
+// tests/tools/view_page/view_page_test.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -114,12 +114,12 @@ def with_mesas_decoding(page):
     pathlib.Path(page).write_text(text)
 
 
-def compared(tool, window, arguments, folder, width, height):
+def compared(tool, window, arguments, folder, width, height, page_options=()):
     """Writes the page of these arguments, and returns the comparison of its pixels with the picture."""
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     common = [*arguments, "--size", f"{width}x{height}"]
-    relief_view(tool, *common, "--output", folder / "page.html")
+    relief_view(tool, *common, *page_options, "--output", folder / "page.html")
     with_mesas_decoding(folder / "page.html")
     open_page(window, folder / "page.html")
     drawn = pixels(window, width, height)

@@ -4,11 +4,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "page_quantize.h"
 #include "page_writer.h"
 #include "support/labels.h"
 #include "support/shared_data.h"
@@ -37,6 +42,34 @@ TEST(PageScript, IsSmall) {
     EXPECT_LT(relief::detail::zlib_stream(bytes).size(), 20'000U);
     EXPECT_THAT(script, Not(HasSubstr("import ")));
     EXPECT_THAT(script, Not(HasSubstr("fetch(")));
+}
+
+TEST(PageQuantize, KeepsTheEndsAndStatesTheError) {
+    const std::vector<float> values = {-1.0F, 5.0F, 0.25F, 5.0F, 1.0F, 5.0F};
+    const std::optional<QuantizedFloats> codes = quantized(values, 2);
+    ASSERT_TRUE(codes);
+    EXPECT_EQ(codes->min, (std::vector<float>{-1.0F, 5.0F}));
+    EXPECT_EQ(codes->max, (std::vector<float>{1.0F, 5.0F}));
+    // 0.25 is at 0.625 * 65535 = 40959.375, and a step is 2 / 65535.
+    EXPECT_EQ(codes->codes, (std::vector<std::uint16_t>{0, 0, 40959, 0, 65535, 0}));
+    EXPECT_NEAR(codes->error, 0.375 * 2.0 / 65535.0, 1e-9);
+    EXPECT_FALSE(quantized(std::vector<float>{1.0F, NAN}, 1)) << "is kept as it is";
+}
+
+TEST(PageQuantize, MakesTheVaseSmaller) {
+    const Workplace workplace;
+    std::vector<std::size_t> sizes;
+    for (const char* option : {"", "--page-quantize"}) {
+        const ProgramResult result = workplace.run(
+            std::string("relief-view data/vase.obj --output out/vase.html --json --quiet ") +
+            option);
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        const json page = json::parse(result.out)["page"];
+        sizes.push_back(page["bytes"]);
+        EXPECT_EQ(page["quantization"].contains("position_object"), !page["quantization"].empty());
+        if (*option != '\0') EXPECT_LT(page["quantization"]["position_object"], 1e-4);
+    }
+    EXPECT_LT(sizes[1], sizes[0]);
 }
 
 TEST(ViewPage, IsOneFileThatLoadsNothing) {

@@ -181,7 +181,7 @@ class ViewPage(unittest.TestCase):
         self.assertNotEqual(self.pixels(), first)
 
     def test_moves_to_a_time_as_the_renderer_does(self):
-        self.page("time.html", "data/scenes/illumination.json")
+        self.page("time.html", "data/scenes/illumination.json", "--size", "{}x{}".format(*SIZE))
         self.run_in("page.moveTo(1.5)")
         pages.write_png(self.work / "time.png", self.pixels(*SIZE), *SIZE)
         result = pages.relief_view(TOOL, "data/scenes/illumination.json", "--time", "1.5", "--size",
@@ -191,7 +191,8 @@ class ViewPage(unittest.TestCase):
 
     def test_deforms_as_the_renderer_does(self):
         for name in MOVING if SHARED else []:
-            file = self.page("moving.html", model(name), "--time", "0.5", "--shadow", "2")
+            file = self.page("moving.html", model(name), "--time", "0.5", "--shadow", "2", "--size",
+                             "{}x{}".format(*SIZE))
             pages.with_mesas_decoding(file)
             pages.open_page(self.window, file)
             self.run_in("page.moveTo(0.1); page.moveTo(0.5)")
@@ -208,6 +209,11 @@ class ViewPage(unittest.TestCase):
         first = self.pixels()
         self.run_in("const list = page.part('view'); list.value = 'diffuse'; list.dispatchEvent(new Event('change'))")
         self.assertNotEqual(self.pixels(), first)
+
+    def test_quantizes_vertices(self):
+        difference = pages.compared(TOOL, self.window, ["data/vase.obj"], self.work / "case", *SIZE,
+                                    page_options=["--page-quantize"])
+        self.assertLess(difference["flip_mean"], MAX_FLIP)
 
     def test_fits_a_phone(self):
         self.page("phone.html", "data/scenes/illumination.json")

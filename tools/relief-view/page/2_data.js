@@ -12,7 +12,8 @@ class Data {
     return this.bytes.subarray(offset, offset + length);
   }
   floats(i) {
-    const bytes = this.section(i);
+    const bytes = this.section(i), range = this.page.quantized[i];
+    if (range) return range.values = range.values || unquantized(bytes, range);
     return new Float32Array(bytes.buffer, bytes.byteOffset, bytes.length / 4);
   }
   integers(i) {
@@ -56,6 +57,12 @@ class Data {
     }
     return {width: texture.w, height: texture.h, samples};
   }
+}
+
+// Attributes of 16 bits, by the least and the largest value of each component.
+function unquantized(bytes, {min, max}) {
+  const codes = new Uint16Array(bytes.buffer, bytes.byteOffset, bytes.length / 2), c = min.length;
+  return Float32Array.from(codes, (code, i) => min[i % c] + (max[i % c] - min[i % c]) * code / 65535);
 }
 
 // Mip levels by the rule of libmesh/src/image/mip_levels.cpp: a box filter in linear light, with 16

@@ -125,7 +125,7 @@ class Gpu {
     if (this.buffers[section]) return this.buffers[section];
     const name = gl.createBuffer();
     gl.bindBuffer(target, name);
-    gl.bufferData(target, this.data.section(section), gl.STATIC_DRAW);
+    gl.bufferData(target, target === gl.ARRAY_BUFFER ? this.data.floats(section) : this.data.section(section), gl.STATIC_DRAW);
     return this.buffers[section] = name;
   }
 }

@@ -71,7 +71,15 @@ class Page {
   draw(width, height) {
     const {canvas} = this;
     if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [Math.max(width, 1), Math.max(height, 1)];
-    this.painter.draw(this.page.pictures[this.picture], this.camera || this.scene.camera, canvas.width, canvas.height);
+    this.painter.draw(this.page.pictures[this.picture], this.fitted(canvas.width / canvas.height), canvas.width, canvas.height);
+  }
+
+  // The camera; in a picture that is narrower than that of the command line, it sees as much to the
+  // sides.
+  fitted(aspect) {
+    const camera = this.camera || this.scene.camera, more = this.page.aspect / aspect;
+    if (!(more > 1.001)) return camera;
+    return {...camera, height: camera.height && camera.height * more, fov: 2 * Math.atan(more * Math.tan(camera.fov / 2))};
   }
 
   // The picture of this size in base64, as rows of RGBA from the bottom.
@@ -224,7 +232,8 @@ class Page {
 
   pan(dx, dy) {
     const camera = this.own(), distance = size(add(column(camera.matrix, 3), this.target, -1));
-    const perPixel = 2 * halfHeight(camera) * (camera.height ? 1 : distance) / this.canvas.getBoundingClientRect().height;
+    const box = this.canvas.getBoundingClientRect(), shown = this.fitted(box.width / box.height);
+    const perPixel = 2 * halfHeight(shown) * (camera.height ? 1 : distance) / box.height;
     const shift = add(times(column(camera.matrix, 0), -dx * perPixel), column(camera.matrix, 1), dy * perPixel);
     this.target = add(this.target, shift);
     for (let k = 0; k < 3; ++k) camera.matrix[12 + k] += shift[k];
