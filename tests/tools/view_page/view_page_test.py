@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Compares pages with pictures in a headless browser: view_page_test.py TOOL FOLDER few|all [SHARED].
+"""Compares pages with pictures in a headless browser: view_page_test.py TOOL FOLDER few|all
+[SHARED] [TEST...].
 
 FOLDER is one in which `relief-view data/vase.obj` has its model; `all` also draws the glTF models of
 SHARED. Exits with 77 without a browser (Debian's chromium and chromium-driver). Run by
@@ -239,7 +240,7 @@ class ViewPage(unittest.TestCase):
 
 if __name__ == "__main__":
     TOOL, FOLDER, SCOPE = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), sys.argv[3]
-    SHARED = pathlib.Path(sys.argv[4]) if len(sys.argv) > 4 and not sys.argv[4].startswith("-") else None
+    SHARED = pathlib.Path(sys.argv[4]) if len(sys.argv) > 4 and pathlib.Path(sys.argv[4]).is_dir() else None
     if pages.browser.programs() is None:
         print("needs chromium and chromedriver", file=sys.stderr)
         sys.exit(77)
