@@ -63,10 +63,24 @@ void replace_output(ShaderSteps& steps) {
         output->second = "output.glsl#shown";
 }
 
-PageProgram screen_program(const std::string& name, const ShaderSteps& steps) {
-    const GlslVersion version = GlslVersion::es_300;
-    return {assemble(name + ".glsl#vertex", steps, {}, version).text,
-            assemble(name + ".glsl#fragment", steps, {}, version).text};
+/// The texts that replace parts of the shaders of a scene.
+ShaderTexts texts_of(const PreparedScene& renderer) {
+    return renderer.shaders ? *renderer.shaders : ShaderTexts();
+}
+
+PageProgram page_program(const SurfaceProgram& source) {
+    return {source.vertex.text, source.fragment.text};
+}
+
+PageProgram surface_page_program(const PreparedScene& of, const Features& features,
+                                 bool shows_samples) {
+    return page_program(surface_program_with(
+        features, GlslVersion::es_300, shows_samples ? replace_output : nullptr, texts_of(of)));
+}
+
+PageProgram screen_program(const PreparedScene& of, std::string_view name,
+                           const ShaderSteps& steps) {
+    return page_program(pass_program(name, steps, GlslVersion::es_300, texts_of(of)));
 }
 
 std::vector<float> floats_of(const glm::vec4& v) {
@@ -108,11 +122,11 @@ struct PageRecorder::Implementation {
 
     void name_images(const Scene& scene, const PreparedScene& renderer);
     PageDraw record(const PreparedScene& renderer, const Draw& draw, bool shows_samples);
-    PageProgram program(const Features& features, bool shows_samples) const;
     void add_lookups(const gl::LinkedProgram& program, PageSurface& surface, PageDraw& draw);
     std::optional<PageScreenPass> skybox(const Scene& scene, const PreparedScene& of,
                                          OutputCoding coding, bool shows_samples);
-    PageScreenPass finishing(const Scene& scene, const FrameSettings& settings, bool shows_samples);
+    PageScreenPass finishing(const Scene& scene, const PreparedScene& of,
+                             const FrameSettings& settings, bool shows_samples);
 
     const Context& context;
     RenderCache cache;
@@ -130,13 +144,6 @@ void PageRecorder::Implementation::name_images(const Scene& scene, const Prepare
                 scene.images[used.texture->image]);
         }
     }
-}
-
-PageProgram PageRecorder::Implementation::program(const Features& features,
-                                                  bool shows_samples) const {
-    const SurfaceProgram source = surface_program_with(features, GlslVersion::es_300,
-                                                       shows_samples ? replace_output : nullptr);
-    return {source.vertex.text, source.fragment.text};
 }
 
 /// Adds the textures that a program samples: those of the material, and those by vertex.
@@ -170,11 +177,12 @@ PageDraw PageRecorder::Implementation::record(const PreparedScene& renderer, con
     result.pass = is_blended(draw)    ? PagePass::blended
                   : is_covering(draw) ? PagePass::covering
                                       : PagePass::transmissive;
-    result.program = content.program(program(f, shows_samples));
+    result.program = content.program(surface_page_program(renderer, f, shows_samples));
     if (renderer.plan.shadow_maps && draw.surface->casts_shadow) {
         Features depth_only = f;
         depth_only.view = DebugView::overdraw;
-        result.shadow_program = content.program(program(canonical(depth_only), false));
+        result.shadow_program =
+            content.program(surface_page_program(renderer, canonical(depth_only), false));
     }
     result.instance = draw.instance;
     result.first_triangle = draw.range.first_triangle;
@@ -209,10 +217,10 @@ std::optional<PageScreenPass> PageRecorder::Implementation::skybox(const Scene& 
                                                                    bool shows_samples) {
     if (!of.skybox) return std::nullopt;
     ShaderSteps steps = skybox_steps(coding, scene);
-    const auto linked = cache.implementation().programs.get("skybox", steps);
+    const auto linked = of.linked.get("skybox", steps);
     if (shows_samples) replace_output(steps);
     PageScreenPass pass;
-    pass.program = content.program(screen_program("skybox", steps));
+    pass.program = content.program(screen_program(of, "skybox", steps));
     const glm::vec2 turn =
         scene.environment ? environment_turn(*scene.environment) : glm::vec2(1.0F, 0.0F);
     pass.surface.values = {
@@ -228,14 +236,14 @@ std::optional<PageScreenPass> PageRecorder::Implementation::skybox(const Scene& 
     return pass;
 }
 
-PageScreenPass PageRecorder::Implementation::finishing(const Scene& scene,
+PageScreenPass PageRecorder::Implementation::finishing(const Scene& scene, const PreparedScene& of,
                                                        const FrameSettings& settings,
                                                        bool shows_samples) {
     ShaderSteps steps = output_steps(settings.output, scene);
     if (shows_samples) steps = {{"output", "output.glsl#codes"}};
     choose_part(steps, "picture.glsl#one_sample");
     PageScreenPass pass;
-    pass.program = content.program(screen_program("picture", steps));
+    pass.program = content.program(screen_program(of, "picture", steps));
     const glm::vec4 background = shown_background(scene.background, settings.output);
     pass.surface.values = {
         {"background", floats_of({glm::vec3(background) * background.a, background.a})},
@@ -268,7 +276,7 @@ void PageRecorder::add(const SceneGraph& graph, const FramePlan& plan,
     const bool finishes = renderer.plan.finishing_pass || shows_samples;
     picture.skybox = self.skybox(scene, renderer,
                                  drawn_coding(single, renderer.plan.finishing_pass), shows_samples);
-    if (finishes) picture.finishing = self.finishing(scene, settings, shows_samples);
+    if (finishes) picture.finishing = self.finishing(scene, renderer, settings, shows_samples);
     if (!finishes) picture.clear_color = clear_color(scene.background, settings.output);
     for (const Draw& draw : renderer.draws)
         picture.draws.push_back(self.record(renderer, draw, shows_samples));

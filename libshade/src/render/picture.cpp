@@ -22,8 +22,6 @@ gl::ColorFormat format_of(OutputCoding coding) {
     }
 }
 
-}
-
 }  // namespace
 
 glm::vec4 shown_background(const glm::vec4& background, OutputCoding output) {
