@@ -14,6 +14,7 @@
 #include "window/effects_panel.h"
 #include "window/panels.h"
 #include "window/scene_accuracy.h"
+#include "window/shader_panel.h"
 
 namespace relief::test {
 
