@@ -86,10 +86,10 @@ TEST(MakeCommand, ReducesForSmallDistancesBecauseMapsHaveTheNormals) {
     const Mesh source = read_mesh(workplace / "data/urn-high.ply").mesh;
     const auto distance = [&](const char* file) {
         const Mesh mesh = read_mesh(workplace / file).mesh;
-        return surface_distance(source, mesh).from_a.rms;
+        return surface_distance(source, mesh).from_a.max;
     };
-    // Errors from the surface on the way help pictures more: the ratio was below 0.9 without them.
-    EXPECT_LT(distance("out/asset.ply"), 0.99 * distance("out/other.ply"));
+    // The largest distance: those of both goals are nearly equal in the mean.
+    EXPECT_LT(distance("out/asset.ply"), 0.8 * distance("out/other.ply"));
 }
 
 TEST(MakeCommand, WritesTheSameBytesForAnyNumberOfThreads) {

@@ -44,7 +44,7 @@ TEST(DisplaceCommand, MovesByTheHeightAndStatesTheError) {
         "relief-mesh displace square.obj out/steps.ply --heights steps.png --height 0.5 --zero "
         "0.5 --wrap clamp --max-error 0.01 --report out/r.json");
     ASSERT_EQ(result.exit_code, 0) << result.error;
-    EXPECT_THAT(result.out, HasSubstr("error       at most "));
+    EXPECT_THAT(result.out, HasSubstr("error     at most "));
     EXPECT_THAT(result.out, HasSubstr("the limit is 0.01 (unit of the scene)\n"));
     const json report = json::parse(workplace.read("out/r.json"));
     EXPECT_LE(report["error"]["max"].get<double>(), 0.01);
@@ -85,7 +85,7 @@ TEST(DisplaceCommand, PixelsGiveAnErrorByTheSizeOfTheModel) {
     EXPECT_NEAR(small["error"]["limit"].get<double>(), 0.1414, 1e-4);
     EXPECT_NEAR(large["error"]["limit"].get<double>(), 0.001414, 1e-6);
     EXPECT_LT(small["triangles_written"].get<int>(), large["triangles_written"].get<int>());
-    EXPECT_EQ(small["wrap"], "clamp,repeat") << "the map continues from top to bottom only";
+    EXPECT_EQ(small["wrap"], "repeat") << "the step across the seam is that inside of the map";
 }
 
 TEST(DisplaceCommand, KeepsMaterialsAndEndsAtTheLargestNumberOfTriangles) {

@@ -75,7 +75,7 @@ TEST(MaxError, HasOneMeaningInAllCommands) {
         }
     }
     EXPECT_EQ(of_angles, 7);     // bump, mesh, check, convert, own, fidelity and make
-    EXPECT_EQ(of_distances, 1);  // decimate
+    EXPECT_EQ(of_distances, 2);  // decimate and displace
 }
 
 }  // namespace

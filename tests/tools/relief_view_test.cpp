@@ -527,7 +527,8 @@ TEST(ViewRefusal, StatesTheReasonAndWritesNoFile) {
          {"square.obj --output out/old.png --no-state", 2,
           "--no-state: no window is opened (leave it out)"},
          {"square.obj --output out/p.jpg", 2,
-          "--output out/p.jpg: unsupported format (use .png, .exr, .apng, .mp4 or .webm)"},
+          "--output out/p.jpg: unsupported format (use .png, .exr, .apng, .mp4, "
+          ".webm or .html)"},
          {"square.obj --output out/old.png --size 5", 2, "--size 5: not a size like 1920x1080"},
          {"square.obj --output out/old.png --samples 2", 2, "--samples 2: not one of 1, 4"},
          {"square.obj --output out/old.png --fov 180", 2,

@@ -170,9 +170,11 @@ void add_displace_options(CLI::App& app, DisplaceCommand& command) {
              "Default: auto.")
         .group(heights);
     const std::string size = "Triangles";
-    add_number(app, "--max-error", "E", command.max_error, {1e-30, 1e30, ""},
-               "Divide triangles while the surface of the heights is farther than E from them at "
-               "the center of a texel, in the unit of the scene.")
+    add_number(
+        app, "--max-error", "E", command.max_error, {1e-30, 1e30, ""},
+        "Maximum distance: divide triangles while the surface of the heights is farther than "
+        "E from them, at the centers of texels and the middles of edges, in the unit of the "
+        "scene.")
         .group(size);
     add_number(app, "--pixels", "N", command.pixels, {1.0, 1e6, ""},
                "The same with an error of half a pixel for a model that is N pixels large. "

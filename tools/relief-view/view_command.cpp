@@ -342,7 +342,7 @@ Command add_view_command(CLI::App& tool) {
     set_common_options(
         tool, {"--output", "--size", "--explain-effects", "--diffuse-map", "--normal-map",
                "--height-map", "--strength", "--material", "--environment", "--light", "--camera",
-               "--turntable", "--compare", "--show", "--steps"});
+               "--turntable", "--compare", "--show"});
     set_examples(
         tool,
         {"relief-view --list-bindings", "relief-view data/vase.obj --output out/vase.png",

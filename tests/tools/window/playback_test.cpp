@@ -25,7 +25,7 @@ using test::Workplace;
 using testing::ElementsAre;
 
 constexpr float quarter = 0.5F * std::numbers::pi_v<float>;
-constexpr float rounding = 1e-5F;  // Of float sines and products.
+constexpr float pose_rounding = 1e-5F;  // Of float sines and products.
 
 /// A node that slides along x, by `distance` in two seconds.
 KeyAnimation slide(const char* name, std::size_t node, float distance) {
@@ -145,8 +145,8 @@ TEST(PlaybackTest, MovesOnlyLightsOnNodes) {
     LightCarriers carriers;
     carriers.point = graph.point_lights;
     playback.pose(graph.scene, carriers);
-    EXPECT_NEAR(graph.scene.point_lights[0].position_world.x, 1.0F, rounding);
-    EXPECT_NEAR(graph.scene.point_lights[0].position_world.z, 0.0F, rounding);
+    EXPECT_NEAR(graph.scene.point_lights[0].position_world.x, 1.0F, pose_rounding);
+    EXPECT_NEAR(graph.scene.point_lights[0].position_world.z, 0.0F, pose_rounding);
 }
 
 TEST(PlaybackTest, AnOrbitChangesItsSpeedWithoutAJump) {
@@ -160,10 +160,10 @@ TEST(PlaybackTest, AnOrbitChangesItsSpeedWithoutAJump) {
     playback.set_time(1.0);
     playback.set_orbit_speed(1, -2.0F * quarter);
     playback.pose(graph.scene, carriers);
-    EXPECT_NEAR(graph.scene.point_lights[0].position_world.x, 1.0F, rounding);
+    EXPECT_NEAR(graph.scene.point_lights[0].position_world.x, 1.0F, pose_rounding);
     playback.set_time(1.5);
     playback.pose(graph.scene, carriers);
-    EXPECT_NEAR(graph.scene.point_lights[0].position_world.z, 1.0F, rounding)
+    EXPECT_NEAR(graph.scene.point_lights[0].position_world.z, 1.0F, pose_rounding)
         << "a quarter back in half a second";
 }
 
@@ -218,7 +218,7 @@ TEST_F(PlayingState, MovesWithoutPreparingTheSceneAgain) {
     const DrawRequest after = *state_.request();
     EXPECT_EQ(after.revision, before.revision);
     EXPECT_NE(after.pose, before.pose);
-    EXPECT_NEAR(light().x, 2.0F, rounding);
+    EXPECT_NEAR(light().x, 2.0F, pose_rounding);
     state_.act(Action::play);
     EXPECT_FALSE(state_.is_turning()) << "a paused animation costs nothing";
     EXPECT_FALSE(state_.advance(1.0));
@@ -240,14 +240,14 @@ TEST_F(PlayingState, FitsTheMotionUnlessItIsFar) {
     };
     const auto [first_pose, fitted_pose] = cameras("0.5", 0.0);
     const auto [motion, fitted_motion] = cameras("0.5", std::nullopt);
-    EXPECT_NEAR(first_pose.target.z, 0.5F, rounding);
-    EXPECT_NEAR(motion.target.z, 0.0F, rounding) << "the center of the circle";
-    EXPECT_NEAR(fitted_motion.target.z, 0.0F, rounding);
+    EXPECT_NEAR(first_pose.target.z, 0.5F, pose_rounding);
+    EXPECT_NEAR(motion.target.z, 0.0F, pose_rounding) << "the center of the circle";
+    EXPECT_NEAR(fitted_motion.target.z, 0.0F, pose_rounding);
     // Half the diagonals of the square and of the box that contains its motion.
     const float growth = glm::length(glm::vec3(1.5F, 1.0F, 0.5F)) / std::sqrt(2.0F);
     EXPECT_NEAR(motion.distance, growth * first_pose.distance, 1e-4F);
     EXPECT_NEAR(cameras("9", std::nullopt).first.distance, cameras("9", 0.0).first.distance,
-                rounding);
+                pose_rounding);
 }
 
 TEST_F(PlayingState, FitsAnotherClipUnlessTheCameraWasMoved) {
@@ -257,14 +257,14 @@ TEST_F(PlayingState, FitsAnotherClipUnlessTheCameraWasMoved) {
         return -(glm::inverse(camera.world_from_view) * glm::vec4(corner, 1.0F)).z / camera.far;
     };
     show_clips("two-clips.gltf");
-    EXPECT_NEAR(state_.camera().target.x, 2.0F, rounding) << "the middle of -1 and 5";
+    EXPECT_NEAR(state_.camera().target.x, 2.0F, pose_rounding) << "the middle of -1 and 5";
     const float distance = state_.camera().distance;
     choose_clip(1);
-    EXPECT_NEAR(state_.camera().target.x, 4.0F, rounding);
+    EXPECT_NEAR(state_.camera().target.x, 4.0F, pose_rounding);
     EXPECT_GT(state_.camera().distance, 1.5F * distance);
 
     choose_clip(0);
-    EXPECT_NEAR(state_.camera().distance, distance, rounding * distance);
+    EXPECT_NEAR(state_.camera().distance, distance, pose_rounding * distance);
     state_.act(Action::left);
     state_.camera().distance *= 1.5F;
     const OrbitCamera moved = state_.camera();
@@ -274,7 +274,7 @@ TEST_F(PlayingState, FitsAnotherClipUnlessTheCameraWasMoved) {
     EXPECT_LE(far_end(7.0F), 1.0F) << "the far plane is behind all that this clip reaches";
     EXPECT_LE(far_end(-1.0F), 1.0F);
     state_.act(Action::fit);
-    EXPECT_NEAR(state_.camera().target.x, 4.0F, rounding);
+    EXPECT_NEAR(state_.camera().target.x, 4.0F, pose_rounding);
 }
 
 TEST_F(PlayingState, DoesNotFitAnotherClipIfTheCameraFitsNoneOrTheModelChanged) {
@@ -287,7 +287,7 @@ TEST_F(PlayingState, DoesNotFitAnotherClipIfTheCameraFitsNoneOrTheModelChanged) 
     show_clips("b.gltf");
     choose_clip(1);
     const OrbitCamera of_clip = state_.camera();
-    EXPECT_NEAR(of_clip.target.x, 4.0F, rounding) << "a reload without changes";
+    EXPECT_NEAR(of_clip.target.x, 4.0F, pose_rounding) << "a reload without changes";
     show_clips("b.gltf", 2.0F);
     choose_clip(0);
     EXPECT_EQ(state_.camera(), of_clip) << "a reload of another size";
@@ -297,20 +297,20 @@ TEST_F(PlayingState, OpensPausedAtAGivenTime) {
     options_.time = 2.0;
     show(orbiting_light);
     EXPECT_FALSE(state_.is_turning());
-    EXPECT_NEAR(light().z, -2.0F, rounding);
+    EXPECT_NEAR(light().z, -2.0F, pose_rounding);
 }
 
 TEST_F(PlayingState, ListsTheTrueSpeedsAndChangesThem) {
     show(orbiting_light);
     std::vector<LightRow> rows = state_.light_rows();
     ASSERT_EQ(rows.size(), 1U);
-    EXPECT_NEAR(rows[0].speed, quarter, rounding);
+    EXPECT_NEAR(rows[0].speed, quarter, pose_rounding);
     state_.advance(1.0);
     rows = state_.light_rows();
     rows[0].speed = 2.0F * quarter;
     state_.set_light_rows(rows);
     state_.advance(1.0);
-    EXPECT_NEAR(light().x, -2.0F, rounding) << "half a turn from the right";
+    EXPECT_NEAR(light().x, -2.0F, pose_rounding) << "half a turn from the right";
 }
 
 TEST_F(PlayingState, ColorEditsKeepTheNodeAndPositionEditsDetach) {
@@ -319,7 +319,7 @@ TEST_F(PlayingState, ColorEditsKeepTheNodeAndPositionEditsDetach) {
     std::get<PointLight>(rows[0].light).intensity = glm::vec3(5.0F);
     state_.set_light_rows(rows);
     state_.advance(1.0);
-    EXPECT_NEAR(light().x, 2.0F, rounding);
+    EXPECT_NEAR(light().x, 2.0F, pose_rounding);
     EXPECT_EQ(state_.scene().point_lights[0].intensity, glm::vec3(5.0F));
     rows = state_.light_rows();
     std::get<PointLight>(rows[0].light).position_world = {0.0F, 9.0F, 0.0F};
@@ -333,17 +333,17 @@ TEST_F(PlayingState, ColorEditsKeepTheNodeAndPositionEditsDetach) {
 TEST_F(PlayingState, MotionIsNotAnEdit) {
     show(orbiting_light);
     state_.advance(1.0);
-    EXPECT_NEAR(state_.scene_at_rest()->point_lights[0].position_world.z, 2.0F, rounding);
+    EXPECT_NEAR(state_.scene_at_rest()->point_lights[0].position_world.z, 2.0F, pose_rounding);
     show_again();
     EXPECT_EQ(state_.json(RenderedPicture{})["edits"]["kept"], 0);
-    EXPECT_NEAR(light().x, 2.0F, rounding) << "the time goes on";
+    EXPECT_NEAR(light().x, 2.0F, pose_rounding) << "the time goes on";
 }
 
 TEST_F(PlayingState, TheCameraFollowsUntilItIsMoved) {
     show(R"("nodes": [{"model": "square.obj"},
         {"orbit": {"radius": 5, "azimuth_speed": 90, "faces_center": true}, "camera": {}}])");
     state_.advance(1.0);
-    EXPECT_NEAR(state_.camera().azimuth, quarter, rounding);
+    EXPECT_NEAR(state_.camera().azimuth, quarter, pose_rounding);
     orbit_by(state_.camera(), {5.0F, 0.0F}, 48);
     const float azimuth = state_.camera().azimuth;
     state_.advance(1.0);
@@ -363,8 +363,8 @@ TEST(PlaybackTest, FollowsTheChosenCamera) {
     ASSERT_TRUE(playback.camera());
     playback.set_time(1.0);
     Scene scene = graph.scene;
-    EXPECT_NEAR(x_of(playback, scene), 2.0F, rounding);
-    EXPECT_NEAR(playback.shown_camera().world_from_view[3].x, 2.0F, rounding);
+    EXPECT_NEAR(x_of(playback, scene), 2.0F, pose_rounding);
+    EXPECT_NEAR(playback.shown_camera().world_from_view[3].x, 2.0F, pose_rounding);
     playback.take(graph, true);
     EXPECT_EQ(playback.chosen_camera(), 1U) << "the file was read again";
     playback.take(graph, false);
