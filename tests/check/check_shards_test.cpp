@@ -43,7 +43,8 @@ class CheckShards : public testing::Test {
                 fmt::format("relief check {0} --shard {1}/{2} --part parts/{1}.part --threads {3}",
                             options, shard, count, 1 + shard % 2));
             EXPECT_EQ(result.exit_code, 0) << result.error;
-            EXPECT_THAT(result.out, HasSubstr(fmt::format("part      parts/{}.part\n", shard)));
+            EXPECT_EQ(result.out.find(fmt::format("part      parts/{}.part\n", shard)),
+                      options.find("--format json") == std::string::npos ? 0 : std::string::npos);
         }
         return "parts/*.part";
     }

@@ -148,6 +148,7 @@ TEST(Farm, RefusesWhatItCannotDivide) {
          {jobs("f.json", R"({"jobs": [{"command": ["make"], "shard": 2}]})"), 1, "f.json: "},
          {"farm none.json", 1, "none.json"},
          {"farm data/make-job.json --submit", 2, "--submit, --measure: have no effect"},
+         {"farm data/make-job.json --silence 5", 2, "--silence: has no effect without"},
          {"farm data/make-job.json --engine slurm --folder data", 1, "/"},
          {"farm data/make-job.json --clean --folder data", 1, "/"}});
 }

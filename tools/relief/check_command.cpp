@@ -281,7 +281,8 @@ ExitCode run_shard(const CLI::App& app, const CheckCommand& command, const Check
     Stages stages(command.general.quiet);
     check_shard(walked, part, stages);
     write_part(file, part);
-    if (!command.general.quiet) {
+    // Other formats have the merge's results only.
+    if (!command.general.quiet && command.format == CheckFormat::text) {
         print_entry("part", printable(file.string()));
         print_entry("checked", fmt::format("{} and {}", counted(part.models.size(), "model"),
                                            counted(part.images.size(), "image")));

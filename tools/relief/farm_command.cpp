@@ -256,6 +256,8 @@ ExitCode run(const CLI::App& app, const FarmCommand& command) {
     if (command.engine == FarmEngine::commands && (command.submits || command.measures))
         throw UsageError("--submit, --measure: have no effect with --engine commands",
                          "give --engine slurm or parallel");
+    if (command.engine != FarmEngine::slurm && is_given(app, "--silence"))
+        throw UsageError("--silence: has no effect without --engine slurm");
     check(command.report, {command.jobs});
     const FarmJobs jobs =
         read_farm_jobs(command.jobs, command.shards, path / "parts", command.limits.threads);
