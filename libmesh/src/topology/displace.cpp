@@ -33,7 +33,7 @@ using namespace relief::detail;
 namespace {
 
 constexpr std::size_t triangles_per_task = 256;
-constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
 
 void check(const Mesh& mesh, const Image& heights, const DisplaceOptions& options) {
     validate(mesh);
@@ -166,7 +166,8 @@ std::vector<bool> divided_edges(const DisplacedSurface& surface, const Edges& ed
 
 /// Appends the parts of a triangle.
 ///
-/// \param middles  the vertex in the middle of the edge from each corner to the next one, or `none`
+/// \param middles  the vertex in the middle of the edge from each corner to the next one, or
+/// no_vertex
 void append_parts(const DisplacedSurface& surface, const SurfaceTriangle& triangle,
                   const std::array<std::uint32_t, 3>& middles,
                   std::vector<SurfaceTriangle>& parts) {
@@ -174,12 +175,12 @@ void append_parts(const DisplacedSurface& surface, const SurfaceTriangle& triang
         parts.push_back({{a, b, c}, triangle.source});
     };
     std::size_t turn = 0;  // So that the first edge is divided and, if two are, the second one.
-    const auto count = 3 - std::count(middles.begin(), middles.end(), none);
+    const auto count = 3 - std::count(middles.begin(), middles.end(), no_vertex);
     if (count == 0) {
         parts.push_back(triangle);
         return;
     }
-    while (middles[turn] == none || (count == 2 && middles[(turn + 1) % 3] == none))
+    while (middles[turn] == no_vertex || (count == 2 && middles[(turn + 1) % 3] == no_vertex))
         ++turn;
     const auto corner = [&](std::size_t k) {
         return triangle.vertices[static_cast<int>((turn + k) % 3)];
@@ -228,7 +229,7 @@ bool divide(DisplacedSurface& surface, std::span<const std::uint8_t> needs,
     }
     if (count > max_triangles) return false;
 
-    std::vector<std::uint32_t> middle_at(3 * surface.triangles.size(), none);
+    std::vector<std::uint32_t> middle_at(3 * surface.triangles.size(), no_vertex);
     std::vector<glm::uvec2> sides;
     for (std::uint32_t edge = 0; edge < edges.count(); ++edge) {
         check_cancelled(edge);
@@ -307,8 +308,8 @@ class Assembly {
         : mesh_(mesh),
           surface_(surface),
           normals_(surface.normals()),
-          number_(surface.vertices.size(), none),
-          number_of_kept_(mesh.positions.size(), none) {
+          number_(surface.vertices.size(), no_vertex),
+          number_of_kept_(mesh.positions.size(), no_vertex) {
         result_.name = mesh.name;
     }
 
@@ -373,7 +374,7 @@ class Assembly {
     }
 
     std::uint32_t vertex(std::uint32_t index) {
-        if (number_[index] != none) return number_[index];
+        if (number_[index] != no_vertex) return number_[index];
         const SurfaceVertex& v = surface_.vertices[index];
         number_[index] = append(glm::vec3(surface_.points[v.point].moved), normals_[index],
                                 glm::vec2(v.texcoord), v.color, v.texcoord_2);
@@ -381,7 +382,7 @@ class Assembly {
     }
 
     std::uint32_t kept_vertex(std::uint32_t index) {
-        if (number_of_kept_[index] != none) return number_of_kept_[index];
+        if (number_of_kept_[index] != no_vertex) return number_of_kept_[index];
         number_of_kept_[index] =
             append(mesh_.positions[index], mesh_.normals[index], mesh_.texcoords[index],
                    mesh_.colors.empty() ? glm::vec4(0.0F) : mesh_.colors[index],

@@ -26,7 +26,7 @@ using test::boundary_edges;
 using test::message_of;
 using testing::HasSubstr;
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float no_number = std::numeric_limits<float>::quiet_NaN();
 
 Image heights_of(int width, int height, const std::vector<float>& values) {
     Image image;
@@ -271,13 +271,13 @@ TEST(Displace, MaterialsGroupsAndColorsStay) {
 TEST(Displace, UnusableInputIsCountedAndKept) {
     Mesh mesh = make_quad(2);
     mesh.normals.clear();
-    mesh.positions.emplace_back(nan, 0.0F, 0.0F);
+    mesh.positions.emplace_back(no_number, 0.0F, 0.0F);
     mesh.texcoords.emplace_back(0.0F, 0.0F);
     const auto last = static_cast<std::uint32_t>(mesh.positions.size() - 1);
     mesh.triangles.insert(mesh.triangles.begin() + 1, {0, 1, last});
     mesh.triangles.emplace_back(0, 1, 0);
     std::vector<float> values(64, 0.0F);
-    values[9] = nan;
+    values[9] = no_number;
     values[27] = 1.0F;
     Report report;
     const Mesh fine =
@@ -292,7 +292,7 @@ TEST(Displace, UnusableInputIsCountedAndKept) {
     EXPECT_EQ(finite, fine.positions.size() - 1);
 
     Mesh without_place = make_quad(2);
-    without_place.texcoords[4].x = nan;
+    without_place.texcoords[4].x = no_number;
     Report of_texcoords;
     const DisplacedMesh partly = displaced(without_place, heights_of(8, 8, values),
                                            {.height = 0.2, .max_error = 0.01}, of_texcoords);
@@ -348,7 +348,7 @@ TEST(Displace, BadOptionsAreRefused) {
     };
     EXPECT_THAT(message(make_quad(), map, {.height = 1.0, .max_error = 0.0}),
                 HasSubstr("the largest error is 0, but must be above 0"));
-    EXPECT_THAT(message(make_quad(), map, {.height = nan, .max_error = 0.1}),
+    EXPECT_THAT(message(make_quad(), map, {.height = no_number, .max_error = 0.1}),
                 HasSubstr("the height is nan, but must be finite"));
     Mesh bare = make_quad();
     bare.texcoords.clear();

@@ -133,7 +133,7 @@ std::string map_title(TextureSlot slot);
 bool is_map_used(const Material& material, TextureSlot slot);
 
 /// The extension of a path in a material of glTF ("extensions/KHR_materials_ior/ior"), or empty.
-std::string_view extension_of(std::string_view gltf);
+std::string_view gltf_extension_of(std::string_view gltf);
 
 /// What a group of the rows of a material edits.
 enum class MaterialTopic {

@@ -63,7 +63,7 @@ MaterialGroup extension_group(const MetallicRoughness& model, std::string_view e
         group.has_effect = rule.has_effect(model);
     }
     for (const TextureSlotInfo& info : texture_slots) {
-        if (extension_of(info.gltf) == extension) group.slots.push_back(info.slot);
+        if (gltf_extension_of(info.gltf) == extension) group.slots.push_back(info.slot);
     }
     return group;
 }
@@ -72,7 +72,7 @@ MaterialGroup extension_group(const MetallicRoughness& model, std::string_view e
 std::vector<std::string_view> field_extensions() {
     std::vector<std::string_view> names;
     for_each_field<MetallicRoughness>([&](const auto& field) {
-        const std::string_view name = extension_of(field.gltf);
+        const std::string_view name = gltf_extension_of(field.gltf);
         if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
             names.push_back(name);
     });
@@ -81,7 +81,7 @@ std::vector<std::string_view> field_extensions() {
 
 }  // namespace
 
-std::string_view extension_of(std::string_view gltf) {
+std::string_view gltf_extension_of(std::string_view gltf) {
     constexpr std::string_view prefix = "extensions/";
     if (!gltf.starts_with(prefix)) return {};
     gltf.remove_prefix(prefix.size());

@@ -122,7 +122,7 @@ namespace {
 bool edit_factors(MetallicRoughness& model, std::string_view extension) {
     bool changed = false;
     for_each_field<MetallicRoughness>([&](const auto& field) {
-        if (extension_of(field.gltf) == extension) changed |= edit_field(model, field);
+        if (gltf_extension_of(field.gltf) == extension) changed |= edit_field(model, field);
     });
     return changed;
 }

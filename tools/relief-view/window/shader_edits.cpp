@@ -142,13 +142,14 @@ std::vector<std::string> ShaderEdits::save(const std::filesystem::path& folder) 
     make_folder(folder);
     std::map<std::string, std::string> files;
     std::error_code none;
-    for (const auto& [address, text] : edits_) {
-        const std::string name = file_of(address);
-        const auto [file, is_new] = files.try_emplace(name);
-        if (is_new && std::filesystem::exists(folder / name, none))
-            file->second = read_file(folder / name);
-        file->second =
-            about(folder / name, [&] { return with_shader_part(file->second, address, text); });
+    for (const auto& edit : edits_) {
+        const std::string name = file_of(edit.first);
+        const auto added = files.try_emplace(name);
+        std::string& file = added.first->second;
+        if (added.second && std::filesystem::exists(folder / name, none))
+            file = read_file(folder / name);
+        file =
+            about(folder / name, [&] { return with_shader_part(file, edit.first, edit.second); });
     }
     std::vector<std::string> names;
     for (const auto& [name, text] : files) {
