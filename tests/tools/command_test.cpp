@@ -55,7 +55,8 @@ TEST(AllTools, ExplainWrongUsageInOneLineAndExitWith2) {
     const std::vector<WrongUsage> rows = {
         {"relief-mesh",
          "relief-mesh: error: a command is missing: process or decimate or lods or subdivide or "
-         "displace or repair or remesh or unwrap or material or info or check or compare or conformance (see "
+         "displace or repair or remesh or unwrap or material or info or check or compare or "
+         "conformance (see "
          "relief-mesh --help)"},
         {"relief-mesh proces a b",
          "relief-mesh: error: proces: unknown command (did you mean process?)"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "topology/displaced_surface.h"
+#include "image/displaced_surface.h"
 
 #include <algorithm>
 #include <array>

@@ -19,12 +19,12 @@
 #include "geometry/corners.h"
 #include "geometry/weld.h"
 #include "image/bilinear_heights.h"
+#include "image/displaced_surface.h"
 #include "image/height_holes.h"
 #include "parallel.h"
 #include "progress_stage.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/height_map.h"
-#include "topology/displaced_surface.h"
 #include "topology/topology.h"
 
 namespace relief {
