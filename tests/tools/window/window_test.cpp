@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 
 #include "relief/mesh/image_file.h"
 #include "relief/shade/image_compare.h"
@@ -214,15 +215,25 @@ class PanelsOfWindow : public Window {
     void shaders_are_shown() {
         window().click_on("Effects");
         window().click_on("Shaders");
+        scroll_until([](const json& now) { return now["places"].contains("Program 1"); });
         window().click_on("Program 1");
         const auto has_source = [](const json& now) {
             return now["places"].contains("Vertex shader") &&
                    now["places"].contains("Copy without numbers");
         };
+        scroll_until(has_source);
         window().wait_for("the source", has_source);
         window().click_on("Vertex shader");
         window().wait_for("the other one", has_source);
+        display().act("mousemove 150 60 click --repeat 100 4");
         window().click_on("Shaders");
+    }
+
+    /// Turns the wheel over the panels, below which the programs are.
+    void scroll_until(const std::function<bool(const json&)>& holds) {
+        constexpr int most = 30;
+        for (int i = 0; i < most && !holds(window().wait_for_rest()); ++i)
+            display().act("mousemove 150 60 click --repeat 3 5");
     }
 
     void costs_are_measured_until_the_plan_changes() {
