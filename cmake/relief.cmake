@@ -71,8 +71,8 @@ endif()
 # precompiled. Libraries and tools compile each file alone, so that a change compiles little. Test files are compiled
 # in batches, which takes half of the time. The sanitized build, whose instrumented templates cost most, compiles all
 # files in batches, and so does CI (RELIEF_UNITY=ALL), which starts from nothing. With RELIEF_UNITY=OFF each file is
-# compiled alone, as in the debug preset. Batches dictate no names: the files of a batch that does not compile are
-# compiled alone (compile-batch).
+# compiled alone, as in the debug preset. A batch that does not compile is halved (compile-batch). CONTRIBUTING.md has
+# the one rule for names.
 option(RELIEF_PCH "Precompile the headers that nearly every file includes" ON)
 set(RELIEF_UNITY ON CACHE STRING "Compile in batches: ON: tests, and all files under sanitizers; ALL: all files; OFF")
 set(RELIEF_PCH_HEADER ${CMAKE_CURRENT_LIST_DIR}/precompiled.h)

@@ -371,7 +371,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Algorithm{"encoded_frames", hash_encoded_frames, 0x6A0C3590A8A6CEAE},
                     Algorithm{"conditions", hash_conditions, 0x117C61CB4F3729CC},
                     Algorithm{"curvatures", hash_curvatures, 0x2F11732DAF8C0C23},
-                    Algorithm{"decimation", hash_decimation, 0xCBBD501EF1700FC0},
+                    Algorithm{"decimation", hash_decimation, 0x578DDEB8CAEFDBC3},
                     Algorithm{"subdivision", hash_subdivision, 0x3ADF25FDEA6AA6E9},
                     Algorithm{"distances", hash_distances, 0xA63F82052F540DC0},
                     Algorithm{"bump", hash_bump, 0x7507D5E8682965A0},

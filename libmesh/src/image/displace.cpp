@@ -12,16 +12,17 @@
 #include <limits>
 #include <numeric>
 #include <span>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "geometry/corners.h"
+#include "geometry/direction.h"
 #include "geometry/weld.h"
 #include "image/bilinear_heights.h"
 #include "image/displaced_surface.h"
 #include "image/height_holes.h"
 #include "parallel.h"
+#include "portable_math.h"
 #include "progress_stage.h"
 #include "relief/mesh/frames.h"
 #include "relief/mesh/height_map.h"
@@ -204,9 +205,7 @@ void append_parts(const DisplacedSurface& surface, const SurfaceTriangle& triang
         const double second = squares[(turn + 1) % 3];
         const glm::dvec3& at_0 = surface.point_of(corner(0)).base;
         const glm::dvec3& at_2 = surface.point_of(corner(2)).base;
-        const bool is_first_chosen =
-            first == second ? std::tie(at_0.x, at_0.y, at_0.z) < std::tie(at_2.x, at_2.y, at_2.z)
-                            : first > second;
+        const bool is_first_chosen = first == second ? comes_before(at_0, at_2) : first > second;
         add(a, corner(1), b);
         if (is_first_chosen) {
             add(corner(0), a, corner(2));
@@ -413,10 +412,9 @@ class Assembly {
 void report_texcoords(const Mesh& mesh, Report& report) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         for (int k = 0; k < 3; ++k) {
-            const glm::vec2& texcoord = mesh.texcoords[mesh.triangles[t][k]];
-            if (std::isfinite(texcoord.x) && std::isfinite(texcoord.y)) continue;
+            if (is_finite(mesh.texcoords[mesh.triangles[t][k]])) continue;
             report.add("non-finite texture coordinate", "triangle", t,
-                       "has no height there, and is not displaced at this corner");
+                       "is not displaced at this corner");
             break;
         }
     }

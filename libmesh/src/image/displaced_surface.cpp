@@ -5,30 +5,22 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <tuple>
 #include <unordered_map>
 #include <utility>
 
 #include "geometry/corners.h"
 #include "geometry/direction.h"
+#include "portable_math.h"
 
 namespace relief::detail {
 namespace {
 
 using Sides = std::vector<std::pair<glm::dvec3, double>>;
 
-bool precedes(const glm::dvec3& a, const glm::dvec3& b) {
-    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-}
-
-bool is_finite(const glm::dvec2& texcoord) {
-    return std::isfinite(texcoord.x) && std::isfinite(texcoord.y);
-}
-
 /// Sums vectors in the order of their values, each value once, so that neither the order nor
 /// repeated vertices count.
 glm::dvec3 sum_of_distinct(std::vector<glm::dvec3>& values) {
-    std::sort(values.begin(), values.end(), precedes);
+    std::sort(values.begin(), values.end(), comes_before);
     values.erase(std::unique(values.begin(), values.end()), values.end());
     glm::dvec3 sum(0.0);
     for (const glm::dvec3& value : values)
@@ -146,7 +138,7 @@ void DisplacedSurface::set_gradients() {
         for (const Corner corner : corners.at(v))
             around.push_back(of_triangle[triangle_of(corner)]);
         std::sort(around.begin(), around.end(), [](const auto& a, const auto& b) {
-            return a[0] == b[0] ? precedes(a[1], b[1]) : precedes(a[0], b[0]);
+            return a[0] == b[0] ? comes_before(a[1], b[1]) : comes_before(a[0], b[0]);
         });
         const double share = 1.0 / static_cast<double>(around.size());
         for (const auto& [u_of_one, v_of_one] : around) {
@@ -176,7 +168,7 @@ glm::dvec3 DisplacedSurface::moved(const glm::dvec3& base,
     }
     if (distinct.empty()) return base;
     std::sort(distinct.begin(), distinct.end(), [](const auto& a, const auto& b) {
-        return a.first == b.first ? a.second < b.second : precedes(a.first, b.first);
+        return a.first == b.first ? a.second < b.second : comes_before(a.first, b.first);
     });
     distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
     double height = 0.0;

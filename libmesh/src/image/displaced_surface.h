@@ -59,8 +59,8 @@ class DisplacedSurface {
     /// `enough`. Without samples if a texture coordinate is not finite.
     [[nodiscard]] SampledError error(const SurfaceTriangle& triangle, double enough) const;
 
-    /// Whether the edges of a triangle are at most half a texel long along both axes of the map, or
-    /// a texture coordinate is not finite.
+    /// Returns true if the edges of a triangle are at most half a texel long along both axes of the
+    /// map, or if a texture coordinate is not finite.
     [[nodiscard]] bool is_smallest(const SurfaceTriangle& triangle) const;
 
     /// Adds the middle of the edges between pairs of vertices, which are the sides of one edge.

@@ -13,6 +13,7 @@
 
 #include "geometry/direction.h"
 #include "parallel.h"
+#include "progress_stage.h"
 
 namespace relief::detail {
 namespace {
