@@ -188,7 +188,7 @@ TEST_F(ActionFile, ChecksModelsAndMapsByPatterns) {
     EXPECT_THAT(result.out, HasSubstr("b.gltf"));
     EXPECT_THAT(result.out, HasSubstr("c_normal.png"));
     EXPECT_THAT(run_action({{"models", "*.none"}}).error, HasSubstr("*.none: no such file"));
-    // Nothing to do.
+    // The action has no folder to check.
     EXPECT_EQ(run_action({}).exit_code, 0);
 }
 

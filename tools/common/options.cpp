@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "common/given_options.h"
 #include "common/help.h"
 #include "files.h"
 #include "relief/mesh/image.h"

@@ -123,6 +123,17 @@ AddedOption add_switch(CLI::App& app, const std::string& name, bool& target,
 AddedOption add_switch(CLI::App& app, const std::string& name, const std::string& description,
                        const std::function<void()>& take);
 
+/// An option with its values; a flag has none.
+struct GivenOption {
+    std::string name;  ///< "--size"
+    std::vector<std::string> values;
+};
+
+/// Returns the options that a command line has, in the order of the help page.
+/// \param left_out  names of options that are not returned
+std::vector<GivenOption> given_options(const CLI::App& app,
+                                       std::span<const std::string_view> left_out);
+
 /// Adds a required file argument.
 AddedOption add_file(CLI::App& app, const std::string& name, std::filesystem::path& target,
                      const std::string& description);

@@ -3,18 +3,18 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <numeric>
 #include <string_view>
 
 #include "common/content_hash.h"
+#include "common/options.h"
 
 namespace relief::tools {
 namespace {
 
-/// States why two parts belong to different bakes.
+/// States why two parts belong to different jobs.
 std::string difference(const PartJob& a, const PartJob& b) {
     if (a.version != b.version) return "the versions of relief differ";
     if (a.count != b.count) return fmt::format("one is of {} parts, one of {}", a.count, b.count);
@@ -73,17 +73,10 @@ std::vector<std::string> shared_options(const CLI::App& app) {
     constexpr std::array<std::string_view, 6> left_out = {
         "--shard", "--part", "--threads", "--quiet", "--max-memory", "--max-pixels"};
     std::vector<std::string> words;
-    for (const CLI::Option* option : app.get_options()) {
-        const std::string name = option->get_name();
-        if (option->count() == 0 || !name.starts_with("--") ||
-            std::ranges::find(left_out, name) != left_out.end())
-            continue;
-        if (option->get_expected_max() == 0) {
-            words.push_back(name);
-            continue;
-        }
-        for (const std::string& value : option->results())
-            words.push_back(name + "=" + value);
+    for (const GivenOption& option : given_options(app, left_out)) {
+        if (option.values.empty()) words.push_back(option.name);
+        for (const std::string& value : option.values)
+            words.push_back(option.name + "=" + value);
     }
     return words;
 }

@@ -23,7 +23,6 @@
 #include "accuracy_report.h"
 #include "commands.h"
 #include "common/command.h"
-#include "common/given_options.h"
 #include "common/text.h"
 #include "parallel.h"
 #include "relief/accuracy/experiment.h"

@@ -193,8 +193,7 @@ void settle(ViewOptions& options) {
     check_materials(options);
     check_environment(options);
     check_debug_options(options);
-    check_probe_options(options);
-    check_page(options);
+    check_probed_view(options);
 }
 
 }  // namespace relief::tools

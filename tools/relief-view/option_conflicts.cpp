@@ -9,6 +9,7 @@
 
 #include "common/text.h"
 #include "environment_options.h"
+#include "page_command.h"
 #include "picture_sink.h"
 
 namespace relief::tools {
@@ -29,6 +30,7 @@ struct Conflict {
 constexpr const char* drop_one = "leave one of them out";
 constexpr const char* drop_it = "leave it out";
 constexpr const char* add_environment = "give one, or leave it out";
+constexpr const char* only_pictures = "applies to pictures, not to pages";
 constexpr const char* no_environment = "there is no --environment";
 constexpr const char* add_height_map = "add --height-map, or leave it out";
 constexpr const char* add_normal_map = "add --normal-map, or leave it out";
@@ -41,6 +43,9 @@ bool has_video(const Options& o) {
 }
 bool has_animation(const Options& o) {
     return o.output && is_animation(*o.output);
+}
+bool has_overlays(const Options& o) {
+    return o.debug.wireframe || o.debug.vertex_frames || o.debug.grid || o.debug.health_markers;
 }
 bool uses_bump_map(const Options& o) {
     return o.height_as == HeightUse::bump_map;
@@ -160,6 +165,40 @@ const Conflict conflicts[] = {
      "compares with the solution", "leave out --compare, --reference and --steps"},
     {"--exercise", [](const Options& o) { return o.exercise && !o.output && !o.wants_window(); },
      "there is no --output", "add one"},
+    // The probe.
+    {"--probe", [](const Options& o) { return o.probe && is_sequence(o); },
+     "applies to one picture, not to a sequence", "leave --turntable or --frames out"},
+    {"--probe", [](const Options& o) { return o.probe && has_overlays(o); },
+     "explains surfaces, and lines and markers are drawn over them", "leave them out"},
+    {"--probe", [](const Options& o) { return o.probe && o.compare.compares(); },
+     "explains one picture, not a comparison", drop_one},
+    // Pages.
+    {"--page-views", [](const Options& o) { return !is_page(o) && !o.page_views.empty(); },
+     "there is no page", "add --output page.html"},
+    {"--page-quantize", [](const Options& o) { return !is_page(o) && o.page_quantize; },
+     "there is no page", "add --output page.html"},
+    {"--turntable", [](const Options& o) { return is_page(o) && o.turntable; }, only_pictures,
+     "leave it out: pages are orbited"},
+    {"--frames", [](const Options& o) { return is_page(o) && o.frames; }, only_pictures,
+     "leave it out: pages play animations"},
+    {"--reference", [](const Options& o) { return is_page(o) && o.reference; }, only_pictures,
+     drop_it},
+    {"--compare", [](const Options& o) { return is_page(o) && o.compare.compares(); },
+     only_pictures, drop_it},
+    {"--wireframe", [](const Options& o) { return is_page(o) && o.debug.wireframe; }, only_pictures,
+     drop_it},
+    {"--vertex-frames", [](const Options& o) { return is_page(o) && o.debug.vertex_frames; },
+     only_pictures, drop_it},
+    {"--grid", [](const Options& o) { return is_page(o) && o.debug.grid; }, only_pictures, drop_it},
+    {"--health-markers", [](const Options& o) { return is_page(o) && o.debug.health_markers; },
+     only_pictures, drop_it},
+    {"--benchmark", [](const Options& o) { return is_page(o) && o.effects.benchmark; },
+     only_pictures, drop_it},
+    {"--budget", [](const Options& o) { return is_page(o) && o.effects.budget; }, only_pictures,
+     drop_it},
+    {"--steps", [](const Options& o) { return is_page(o) && o.steps; }, only_pictures, drop_it},
+    {"--exercise", [](const Options& o) { return is_page(o) && o.exercise; },
+     "compares a picture with the solution, and a page is none", "write a picture"},
     // The model.
     {"--up", [](const Options& o) { return o.up && is_scene_file(o); },
      "applies to model files, not to scene files", "rotate the nodes of the scene"},

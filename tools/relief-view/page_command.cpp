@@ -112,27 +112,6 @@ bool is_page(const ViewOptions& options) {
     return options.output && extension_of(*options.output) == ".html";
 }
 
-void check_page(const ViewOptions& options) {
-    const auto refuse_if = [&](bool given, const char* option, const char* remedy) {
-        refuse(is_page(options) && given, option, "applies to pictures, not to pages", remedy);
-    };
-    refuse(!is_page(options) && !options.page_views.empty(), "--page-views", "there is no page",
-           "add --output page.html");
-    refuse(!is_page(options) && options.page_quantize, "--page-quantize", "there is no page",
-           "add --output page.html");
-    const char* const leave = "leave it out";
-    refuse_if(options.turntable.has_value(), "--turntable", "leave it out: pages are orbited");
-    refuse_if(options.frames.has_value(), "--frames", "leave it out: pages play animations");
-    refuse_if(options.reference.has_value(), "--reference", leave);
-    refuse_if(options.compare.compares(), "--compare", leave);
-    refuse_if(options.debug.wireframe, "--wireframe", leave);
-    refuse_if(options.debug.vertex_frames, "--vertex-frames", leave);
-    refuse_if(options.debug.grid, "--grid", leave);
-    refuse_if(options.debug.health_markers.has_value(), "--health-markers", leave);
-    refuse_if(options.effects.benchmark.has_value(), "--benchmark", leave);
-    refuse_if(options.effects.budget.has_value(), "--budget", leave);
-}
-
 WrittenPage write_page(const ViewOptions& options, const FrameSettings& settings,
                        const ComposedScene& composed, Stages& stages, Report& report) {
     const std::unique_ptr<Context> context =

@@ -18,13 +18,10 @@ namespace relief::tools {
 
 void add_page_options(CLI::App& app, ViewOptions& options);
 
-/// Rejects options that do not apply to pages. \throws UsageError
-void check_page(const ViewOptions& options);
-
 /// Returns whether the output is a page.
 bool is_page(const ViewOptions& options);
 
-/// What a page holds.
+/// The counts and sizes of a written page.
 struct WrittenPage {
     std::size_t bytes = 0;
     std::size_t programs = 0;

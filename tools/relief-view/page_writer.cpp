@@ -11,6 +11,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <type_traits>
 #include <variant>
 
@@ -74,49 +75,9 @@ class Sections {
 
 // The description
 
-const char* name_of(PageTexels texels) {
-    switch (texels) {
-        case PageTexels::encoded:
-            return "encoded";
-        case PageTexels::bits_8:
-            return "bits_8";
-        case PageTexels::bits_16:
-            return "bits_16";
-        case PageTexels::floats:
-            return "floats";
-        case PageTexels::rgb9e5:
-            break;
-    }
-    return "rgb9e5";
-}
-
-const char* name_of(PageTexture::Kind kind) {
-    switch (kind) {
-        case PageTexture::Kind::map:
-            return "map";
-        case PageTexture::Kind::cube:
-            return "cube";
-        case PageTexture::Kind::rows:
-            break;
-    }
-    return "rows";
-}
-
-const char* name_of(PagePass pass) {
-    switch (pass) {
-        case PagePass::covering:
-            return "covering";
-        case PagePass::transmissive:
-            return "transmissive";
-        case PagePass::blended:
-            break;
-    }
-    return "blended";
-}
-
 Json json_of(const PageTexture& t) {
-    return {{"kind", name_of(t.kind)},
-            {"t", name_of(t.texels)},
+    return {{"kind", enum_name(t.kind)},
+            {"t", enum_name(t.texels)},
             {"srgb", t.is_srgb},
             {"levels", t.has_levels},
             {"gray", t.is_gray},
@@ -150,7 +111,7 @@ Json json_of(const PageSurface& surface) {
 }
 
 Json json_of(const PageDraw& d) {
-    Json json = {{"pass", name_of(d.pass)},
+    Json json = {{"pass", enum_name(d.pass)},
                  {"program", d.program},
                  {"mesh", d.mesh},
                  {"surface", d.surface},
@@ -210,9 +171,7 @@ void add_carrier(Json& object, const Carried* carried) {
     if (carried->position_only) object["positionOnly"] = true;
 }
 
-template <typename T>
-const Carried* carrier_of(const std::vector<Carried>& carried, const std::vector<T>&,
-                          std::size_t i) {
+const Carried* carrier_of(const std::vector<Carried>& carried, std::size_t i) {
     return i < carried.size() ? &carried[i] : nullptr;
 }
 
@@ -248,7 +207,7 @@ Json lights_json(const std::vector<Light>& lights, const std::vector<Carried>& c
     Json list = Json::array();
     for (std::size_t i = 0; i < lights.size(); ++i) {
         list.push_back(light_json(lights[i]));
-        add_carrier(list.back(), carrier_of(carried, lights, i));
+        add_carrier(list.back(), carrier_of(carried, i));
     }
     return list;
 }
@@ -265,7 +224,7 @@ Json node_json(const SceneNode& node) {
 Json instance_json(const SceneGraph& graph, std::size_t i) {
     const Instance& instance = graph.scene.instances[i];
     Json json = {{"matrix", json_of(instance.world_from_object)}};
-    add_carrier(json, carrier_of(graph.instances, graph.scene.instances, i));
+    add_carrier(json, carrier_of(graph.instances, i));
     if (instance.pose) {
         Json joints = Json::array();
         for (const glm::mat4& matrix : instance.pose->joint_matrices)
@@ -278,34 +237,6 @@ Json instance_json(const SceneGraph& graph, std::size_t i) {
     json["min"] = json_of(box.empty() ? glm::vec3(0.0F) : box.min);
     json["max"] = json_of(box.empty() ? glm::vec3(0.0F) : box.max);
     return json;
-}
-
-const char* name_of(KeyChannel::Property property) {
-    switch (property) {
-        case KeyChannel::Property::translation:
-            return "translation";
-        case KeyChannel::Property::rotation:
-            return "rotation";
-        case KeyChannel::Property::scale:
-            return "scale";
-        case KeyChannel::Property::weights:
-            return "weights";
-        case KeyChannel::Property::pointer:
-            break;
-    }
-    return "pointer";
-}
-
-const char* name_of(KeyInterpolation interpolation) {
-    switch (interpolation) {
-        case KeyInterpolation::step:
-            return "step";
-        case KeyInterpolation::linear:
-            return "linear";
-        case KeyInterpolation::cubic_spline:
-            break;
-    }
-    return "cubic_spline";
 }
 
 /// The values of a channel without the components that its property does not have.
@@ -329,8 +260,8 @@ Json channel_json(const KeyChannel& channel, Sections& sections) {
     if (has_weights) count = keys == 0 ? 0 : channel.weights.size() / keys;
     Json json = {
         {"node", channel.node},
-        {"property", name_of(channel.property)},
-        {"interpolation", name_of(channel.interpolation)},
+        {"property", enum_name(channel.property)},
+        {"interpolation", enum_name(channel.interpolation)},
         {"count", count},
         {"times", sections.add(channel.times)},
         {"values", sections.add(has_weights ? channel.weights : values_of(channel, count))}};

@@ -57,19 +57,11 @@ void add_probe_options(CLI::App& app, ViewOptions& options) {
         .group("Debug views");
 }
 
-void check_probe_options(const ViewOptions& options) {
-    if (!options.probe) return;
-    const DebugChoices& debug = options.debug;
-    refuse(is_sequence(options), "--probe", "applies to one picture, not to a sequence",
-           "leave --turntable or --frames out");
-    refuse(debug.wireframe || debug.vertex_frames || debug.grid || debug.health_markers, "--probe",
-           "explains surfaces, and lines and markers are drawn over them", "leave them out");
-    refuse(
-        debug.view != DebugView::picture && !is_term(debug.view), "--probe",
-        fmt::format("explains light, and --show {} shows none", debug_view_info(debug.view).name),
-        "leave --show out; the probe lists the vectors and texture coordinates");
-    refuse(options.compare.compares(), "--probe", "explains one picture, not a comparison",
-           "leave one of them out");
+void check_probed_view(const ViewOptions& options) {
+    const DebugView view = options.debug.view;
+    refuse(options.probe && view != DebugView::picture && !is_term(view), "--probe",
+           fmt::format("explains light, and --show {} shows none", debug_view_info(view).name),
+           "leave --show out; the probe lists the vectors and texture coordinates");
 }
 
 ProbedPixel probed_pixel(const ViewOptions& options, const ComposedScene& composed,

@@ -14,8 +14,8 @@ namespace relief::tools {
 
 void add_probe_options(CLI::App& app, ViewOptions& options);
 
-/// \throws UsageError if an option contradicts --probe
-void check_probe_options(const ViewOptions& options);
+/// Refuses views without light. \throws UsageError
+void check_probed_view(const ViewOptions& options);
 
 /// Explains the pixel.
 /// \param settings  those of the picture

@@ -22,7 +22,7 @@ namespace relief::tools {
 /// Reads and checks a model. A file that cannot be read is a finding; nothing is thrown.
 CheckedItem check_model_file(const CheckInput& input);
 
-/// What an image file holds, whatever its uses are.
+/// The properties of an image file that do not depend on its use.
 struct ImageFacts {
     std::filesystem::path file;
     bool are_normals = false;  ///< It was read and checked as a normal map in tangent space.

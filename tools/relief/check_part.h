@@ -20,8 +20,8 @@
 
 namespace relief::tools {
 
-/// What a shard found. Its file has the line "relief check part 1 HASH", with the hash of the rest,
-/// and a JSON object.
+/// The results of a shard. Its file has the line "relief check part 1 HASH", with the hash of the
+/// rest, and a JSON object.
 struct CheckPart {
     PartJob job;
     std::size_t shard = 0;

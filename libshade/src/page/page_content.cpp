@@ -9,26 +9,16 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <optional>
 
+#include "files.h"
 #include "gl/cube_map.h"
 #include "relief/mesh/report.h"
 
 namespace relief::shade::detail {
 
 namespace {
-
-/// Returns the place of a value in a list, to which it is added if it is new.
-template <typename T>
-std::size_t place_in(std::vector<T>& list, T value) {
-    const auto known = std::find(list.begin(), list.end(), value);
-    if (known != list.end()) return static_cast<std::size_t>(known - list.begin());
-    list.push_back(std::move(value));
-    return list.size() - 1;
-}
 
 template <typename T>
 std::vector<std::byte> bytes_of(std::span<const T> values) {
@@ -43,9 +33,7 @@ std::vector<std::byte> file_of(const ImageSource& source) {
         return **bytes;
     const auto* path = std::get_if<std::filesystem::path>(&source.source);
     if (path == nullptr) return {};
-    std::ifstream file(*path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    return bytes_of(std::span<const char>(text));
+    return bytes_of(std::span<const char>(relief::detail::read_file(*path)));
 }
 
 bool begins_with(std::span<const std::byte> file, std::string_view start, std::size_t at = 0) {
@@ -164,11 +152,11 @@ std::size_t PageContent::section(std::vector<std::byte> bytes) {
 }
 
 std::size_t PageContent::program(PageProgram program) {
-    return place_in(description.programs, std::move(program));
+    return programs_.add(description.programs, std::move(program));
 }
 
 std::size_t PageContent::surface(PageSurface surface) {
-    return place_in(description.surfaces, std::move(surface));
+    return surfaces_.add(description.surfaces, std::move(surface));
 }
 
 PageSampler PageContent::sampler(GLint unit, GLenum target) const {
@@ -232,7 +220,7 @@ std::size_t PageContent::map(GLuint name) {
     return description.textures.size() - 1;
 }
 
-std::size_t PageContent::cube(GLuint /*name*/) {
+std::size_t PageContent::cube() {
     const gl::Api& gl = *api_;
     const GLenum first = gl::cube_face_target(0);
     const Samples samples = samples_of(level_parameter(gl, first, 0, GL_TEXTURE_INTERNAL_FORMAT));
@@ -281,11 +269,11 @@ PageLookup PageContent::lookup(GLint unit, GLenum type) {
     gl->GetIntegerv(is_cube ? GL_TEXTURE_BINDING_CUBE_MAP : GL_TEXTURE_BINDING_2D, &bound);
     const auto name = static_cast<GLuint>(bound);
     PageLookup lookup;
-    lookup.sampler = place_in(description.samplers, sampler(unit, target));
+    lookup.sampler = samplers_.add(description.samplers, sampler(unit, target));
     if (const auto known = textures_.find(name); known != textures_.end()) {
         lookup.texture = known->second;
     } else {
-        lookup.texture = is_cube ? cube(name) : map(name);
+        lookup.texture = is_cube ? cube() : map(name);
         textures_.emplace(name, lookup.texture);
     }
     gl.check("reading a texture for a page");
@@ -351,7 +339,7 @@ std::size_t PageContent::mesh(const gl::LinkedProgram& program) {
     gl->GetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &triangles);
     mesh.triangles = stored_buffer(static_cast<GLuint>(triangles));
     gl.check("reading a mesh for a page");
-    return place_in(description.meshes, std::move(mesh));
+    return meshes_.add(description.meshes, std::move(mesh));
 }
 
 std::map<std::string, std::vector<float>> PageContent::values(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What the pictures of a page share, each stored once: sections, textures, samplers, programs,
-/// meshes and surfaces. Textures and buffers are read back from OpenGL, image files are taken as
+/// Sections, textures, samplers, programs, meshes and surfaces, which the pictures of a page share;
+/// each is stored once. Textures and buffers are read back from OpenGL, image files are taken as
 /// the scene has them. Tests: tests/tools/view_page/view_page_test.cpp.
 #pragma once
 
@@ -20,6 +20,21 @@
 #include "relief/shade/page.h"
 
 namespace relief::shade::detail {
+
+/// The places of the different values of a list.
+template <typename T>
+class Places {
+  public:
+    /// Returns the place of a value, which is added to the list if it is new.
+    std::size_t add(std::vector<T>& list, T value) {
+        const auto [known, is_new] = places_.try_emplace(value, list.size());
+        if (is_new) list.push_back(std::move(value));
+        return known->second;
+    }
+
+  private:
+    std::map<T, std::size_t> places_;
+};
 
 class PageContent {
   public:
@@ -51,7 +66,7 @@ class PageContent {
 
   private:
     std::size_t map(GLuint texture);
-    std::size_t cube(GLuint texture);
+    std::size_t cube();
     PageSampler sampler(GLint unit, GLenum target) const;
     std::size_t stored_buffer(GLuint name);
     [[nodiscard]] std::vector<std::byte> buffer(GLuint name) const;
@@ -60,6 +75,10 @@ class PageContent {
     std::map<GLuint, const ImageSource*> images_;
     std::map<GLuint, std::size_t> textures_;  ///< By OpenGL's name.
     std::map<GLuint, std::size_t> buffers_;
+    Places<PageProgram> programs_;
+    Places<PageSurface> surfaces_;
+    Places<PageSampler> samplers_;
+    Places<PageMesh> meshes_;
     std::unordered_multimap<std::size_t, std::size_t> sections_;  ///< By the hash of the bytes.
 };
 

@@ -74,7 +74,7 @@ constexpr std::array all_symbols = {
     ProbeSymbol{"ke", "emission of the material"},
     ProbeSymbol{"k", "color of the highlight"},
     ProbeSymbol{"base color", "base color of the material"},
-    ProbeSymbol{"c", "scattering color: base color of the part that is no metal"},
+    ProbeSymbol{"c", "scattering color: base color times the share that is not metal"},
     ProbeSymbol{"c T", "transmitted color"},
     ProbeSymbol{"c + f0", "scattering color and reflectance at normal incidence"},
     ProbeSymbol{"f0", "reflectance at normal incidence"},

@@ -39,7 +39,7 @@ class Recorder {
     /// \param share  of the pixel
     void end_layer(double alpha, double coverage, double share, AlphaMode mode);
 
-    // What the formula uses
+    // The quantities of the formula
     /// Adds a quantity to the next term that begins.
     void note(const ProbeFactor& quantity) { quantities_.push_back(quantity); }
     std::vector<ProbeFactor> take_quantities() { return std::exchange(quantities_, {}); }

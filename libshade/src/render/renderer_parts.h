@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What a renderer holds: its draws, the values and textures that they share, and the resources of
-/// its passes. Beside the renderer itself, the recorder of pages (src/page/) reads it. Tests:
+/// The parts of a renderer: its draws, the values and textures that they share, and the resources
+/// of its passes. Beside the renderer itself, the recorder of pages (src/page/) reads it. Tests:
 /// tests/shade/render/renderer_test.cpp.
 #pragma once
 

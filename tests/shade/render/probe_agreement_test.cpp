@@ -31,7 +31,7 @@ namespace {
 /// at most 12.92.
 constexpr double flushed = 1.2e-38;
 
-/// What probes contained: the terms with light, and the symbols.
+/// The terms with light, and the symbols, that probes contained.
 struct Contents {
     std::set<std::string_view> terms;
     std::set<std::string_view> symbols;

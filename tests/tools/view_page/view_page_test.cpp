@@ -106,11 +106,16 @@ TEST(ViewPage, IsTheSameForAnyNumberOfThreads) {
 TEST(ViewPage, RefusesWhatAPageDoesNotHave) {
     const Workplace workplace;
     const std::string page = "relief-view data/vase.obj --output out/p.html ";
-    for (const char* option : {"--turntable 4", "--wireframe", "--grid", "--benchmark 3"}) {
+    for (const char* option : {"--turntable 4", "--wireframe", "--grid", "--benchmark 3", "--steps",
+                               "--reference data/bricks-diffuse.png"}) {
         const ProgramResult result = workplace.run(page + option);
         EXPECT_EQ(result.exit_code, 2) << option;
         EXPECT_THAT(result.error, HasSubstr("applies to pictures, not to pages")) << option;
     }
+    const ProgramResult exercise = workplace.run(
+        "relief-view --exercise data/exercises/phong-by-reflection.json --output out/p.html");
+    EXPECT_EQ(exercise.exit_code, 2);
+    EXPECT_THAT(exercise.error, HasSubstr("--exercise: compares a picture with the solution"));
     const ProgramResult alone =
         workplace.run("relief-view data/vase.obj --output out/p.png --page-views diffuse");
     EXPECT_EQ(alone.exit_code, 2);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be grabbed in the picture of the real window, browsing for files, and the progress
-// before the first picture.
+// The real window: its handles in the picture, the list of files, and the progress before the first
+// picture.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a page has on the GPU: programs, meshes, textures and samplers. All of it is made again
+// The resources of a page on the GPU: programs, meshes, textures and samplers. All are made again
 // after the loss of the context.
 
 const locations = ['position_object', 'normal_object', 'texcoord', 'tangent_object', 'color_linear', 'texcoord_2'];

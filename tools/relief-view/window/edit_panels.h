@@ -135,7 +135,7 @@ bool is_map_used(const Material& material, TextureSlot slot);
 /// The extension of a path in a material of glTF ("extensions/KHR_materials_ior/ior"), or empty.
 std::string_view gltf_extension_of(std::string_view gltf);
 
-/// What a group of the rows of a material edits.
+/// The subject of a group of rows of a material.
 enum class MaterialTopic {
     base,  ///< Without a header.
     highlights,

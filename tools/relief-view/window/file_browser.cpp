@@ -106,7 +106,7 @@ std::optional<Image> ImagePreviews::take() {
     return picture_;
 }
 
-/// What the user has chosen in this frame.
+/// The user's choice in this frame.
 struct FileDialog::Choice {
     std::optional<std::filesystem::path> file;
     std::optional<std::filesystem::path> folder;

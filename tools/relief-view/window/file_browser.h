@@ -22,7 +22,7 @@
 
 namespace relief::tools {
 
-/// What a selected file is for.
+/// The use of a selected file.
 struct BrowseTarget {
     enum class Kind {
         input,        ///< As if it were dropped on the window.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What the window teaches: the steps of the picture, and the result of an exercise. It uses no
-/// window. Tests: tests/tools/window/lesson_test.cpp.
+/// Lessons in the window: the steps of the picture, and the result of an exercise. This part uses
+/// no window. Tests: tests/tools/window/lesson_test.cpp.
 #pragma once
 
 #include <cstdint>

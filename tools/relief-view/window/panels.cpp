@@ -21,7 +21,7 @@ using shade::DebugView;
 
 namespace {
 
-/// What the window does, in a few words.
+/// Returns the activity of the window in a few words.
 std::string activity(const PanelInput& input) {
     const glm::ivec2& view = input.state.view();
     const shade::FrameSettings& settings = input.drawn.settings;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What the user can grab in the picture: the ends of the axes in its corner, and lights. Positions
-/// on the view are relative to its center, in halves of its height, y up.
+/// Handles in the picture, which the user can drag or click: the ends of the axes in its corner,
+/// and lights. Positions on the view are relative to its center, in halves of its height, y up.
 /// Tests: tests/tools/window/view_handles_test.cpp, handles_window_test.cpp.
 #pragma once
 

@@ -153,6 +153,12 @@ enum class KeyInterpolation {
     cubic_spline,  ///< Cubic Hermite, with a tangent before and after each key.
 };
 
+template <>
+inline constexpr auto enum_names<KeyInterpolation> =
+    std::to_array<EnumName<KeyInterpolation>>({{"step", KeyInterpolation::step},
+                                               {"linear", KeyInterpolation::linear},
+                                               {"cubic_spline", KeyInterpolation::cubic_spline}});
+
 /// The keys of one property of a node. The first value holds before the first key, the last value
 /// after the last key.
 struct KeyChannel {
@@ -172,6 +178,15 @@ struct KeyChannel {
     /// `node` is 0, and missing components of the values are 0.
     std::string pointer{};
 };
+
+template <>
+inline constexpr auto enum_names<KeyChannel::Property> =
+    std::to_array<EnumName<KeyChannel::Property>>({{"translation",
+                                                    KeyChannel::Property::translation},
+                                                   {"rotation", KeyChannel::Property::rotation},
+                                                   {"scale", KeyChannel::Property::scale},
+                                                   {"weights", KeyChannel::Property::weights},
+                                                   {"pointer", KeyChannel::Property::pointer}});
 
 /// Key frames that repeat from the start.
 struct KeyAnimation {

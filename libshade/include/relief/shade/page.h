@@ -9,6 +9,7 @@
 /// right-handed, y up.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -19,6 +20,7 @@
 #include <vector>
 
 #include "relief/export.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
@@ -98,7 +100,7 @@ struct PageMesh {
     friend auto operator<=>(const PageMesh&, const PageMesh&) = default;
 };
 
-/// What draws of one material share.
+/// The values and textures that the draws of one material share.
 struct PageSurface {
     std::map<std::string, std::vector<float>> values;  ///< Of uniforms, by name.
     std::map<std::string, PageLookup> textures;        ///< Of samplers, by name.
@@ -192,4 +194,25 @@ class PageRecorder {
 };
 
 }  // namespace shade
+
+template <>
+inline constexpr auto enum_names<shade::PageTexels> =
+    std::to_array<EnumName<shade::PageTexels>>({{"encoded", shade::PageTexels::encoded},
+                                                {"bits_8", shade::PageTexels::bits_8},
+                                                {"bits_16", shade::PageTexels::bits_16},
+                                                {"floats", shade::PageTexels::floats},
+                                                {"rgb9e5", shade::PageTexels::rgb9e5}});
+
+template <>
+inline constexpr auto enum_names<shade::PageTexture::Kind> =
+    std::to_array<EnumName<shade::PageTexture::Kind>>({{"map", shade::PageTexture::Kind::map},
+                                                       {"cube", shade::PageTexture::Kind::cube},
+                                                       {"rows", shade::PageTexture::Kind::rows}});
+
+template <>
+inline constexpr auto enum_names<shade::PagePass> =
+    std::to_array<EnumName<shade::PagePass>>({{"covering", shade::PagePass::covering},
+                                              {"transmissive", shade::PagePass::transmissive},
+                                              {"blended", shade::PagePass::blended}});
+
 }  // namespace relief

@@ -181,7 +181,7 @@ struct ProbeLayer {
     std::optional<std::size_t> material;  ///< Index into Scene::materials; none: the default.
     glm::dvec3 barycentric{0.0};
     double depth = 0.0;  ///< Distance along the camera's -z.
-    // All that follows is only known for surfaces that are not culled.
+    // The following members are set only if the surface is not culled.
     double alpha = 1.0;     ///< As Material says, whatever its mode.
     double coverage = 1.0;  ///< By its mode.
     double share = 0.0;     ///< Of the pixel: the coverage times what nearer surfaces leave.
