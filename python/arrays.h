@@ -36,6 +36,7 @@ namespace py = pybind11;
 void add_errors(py::module_& module);
 void add_execution(py::module_& module);
 void add_meshes(py::module_& module);
+void add_displace(py::module_& module);
 void add_repair(py::module_& module);
 void add_unwrap(py::module_& module);
 void add_images(py::module_& module);

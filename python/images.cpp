@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "arrays.h"
+#include "heights.h"
 #include "map_kind.h"
 #include "mesh_type.h"
 #include "relief/mesh/block_compression.h"
@@ -23,6 +24,24 @@
 
 namespace relief::python {
 using namespace relief::shade;
+
+Wraps wraps_of(const std::string& text) {
+    const std::size_t comma = text.find(',');
+    if (comma == std::string::npos) return value_of<Wrap>(text, "wrap");
+    return {value_of<Wrap>(text.substr(0, comma), "wrap"),
+            value_of<Wrap>(text.substr(comma + 1), "wrap")};
+}
+
+Image heights_of(const py::object& height, const char* name, const std::string& channel,
+                 const std::optional<std::string>& assume, Report& findings) {
+    const HeightChannel chosen = value_of<HeightChannel>(channel, "channel");
+    Image image = image_of(height, name, findings);
+    return without_gil([&] {
+        // Any channel of alpha may be heights.
+        if (chosen != HeightChannel::alpha) check_kind(image, name, {MapKind::height}, assume);
+        return image.channels == 1 ? std::move(image) : height_field(image, chosen);
+    });
+}
 
 namespace {
 
@@ -64,14 +83,6 @@ std::string name_in(const std::array<EnumName<Enum>, count>& names, Enum value) 
         if (entry.value == value) return entry.name;
     }
     return "";
-}
-
-/// Parses "repeat", or "repeat,clamp" for different axes.
-Wraps wraps_of(const std::string& text) {
-    const std::size_t comma = text.find(',');
-    if (comma == std::string::npos) return value_of<Wrap>(text, "wrap");
-    return {value_of<Wrap>(text.substr(0, comma), "wrap"),
-            value_of<Wrap>(text.substr(comma + 1), "wrap")};
 }
 
 NormalMapFormat format_of(int bits, const std::string& green, const std::string& zero_code,
@@ -145,17 +156,6 @@ py::list py_normal_mip_levels(const py::object& normals) {
 
 // Height maps.
 
-/// Any channel of alpha may be heights.
-Image heights_of(const py::object& height, const std::string& channel, const Text& assume,
-                 Report& findings) {
-    const HeightChannel chosen = value_of<HeightChannel>(channel, "channel");
-    Image image = image_of(height, "height", findings);
-    return without_gil([&] {
-        if (chosen != HeightChannel::alpha) check_kind(image, "height", {MapKind::height}, assume);
-        return image.channels == 1 ? std::move(image) : height_field(image, chosen);
-    });
-}
-
 BumpOptions bump_options(double strength, const Text& kernel, int kernel_radius, const Text& wrap,
                          std::pair<double, double> texel, const Text& arithmetic) {
     BumpOptions options;
@@ -177,7 +177,7 @@ py::array py_bump(const py::object& height, double strength, const Text& kernel,
         bump_options(strength, kernel, kernel_radius, wrap, texel, arithmetic);
     const NormalMapFormat format = format_of(bits, green, zero_code, dither);
     Report findings;
-    const Image heights = heights_of(height, channel, assume, findings);
+    const Image heights = heights_of(height, "height", channel, assume, findings);
     Image map =
         without_gil([&] { return normal_map_from_height(heights, options, format, findings); });
     append(findings, report);
@@ -191,7 +191,7 @@ py::array py_slopes(const py::object& height, double strength, const Text& kerne
     const BumpOptions options =
         bump_options(strength, kernel, kernel_radius, wrap, texel, arithmetic);
     Report findings;
-    const Image heights = heights_of(height, channel, assume, findings);
+    const Image heights = heights_of(height, "height", channel, assume, findings);
     Image slopes = without_gil([&] { return slopes_from_height(heights, options, findings); });
     append(findings, report);
     return array_of(std::move(slopes));
@@ -199,7 +199,7 @@ py::array py_slopes(const py::object& height, double strength, const Text& kerne
 
 py::dict py_bump_options(const py::object& height, double strength, const Text& kernel,
                          const Text& wrap, const std::string& channel, const Text& assume) {
-    const Image heights = heights_of(height, channel, assume, IgnoredReport());
+    const Image heights = heights_of(height, "height", channel, assume, IgnoredReport());
     const BumpOptions given = bump_options(strength, kernel, 2, wrap, {1.0, 1.0}, std::nullopt);
     const BumpOptions options = without_gil([&] { return resolve_options(heights, given); });
     py::dict result;

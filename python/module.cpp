@@ -13,6 +13,7 @@ PYBIND11_MODULE(_relief, module) {
     relief::python::add_errors(module);
     relief::python::add_execution(module);
     relief::python::add_meshes(module);
+    relief::python::add_displace(module);
     relief::python::add_repair(module);
     relief::python::add_unwrap(module);
     relief::python::add_images(module);

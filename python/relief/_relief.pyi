@@ -209,6 +209,20 @@ def remesh(
     sign: Literal["flood", "winding"] = "flood",
     report: Report | None = None,
 ) -> Mesh: ...
+def displace(
+    mesh: Mesh,
+    heights: Image,
+    *,
+    height: float,
+    zero: float = 0.0,
+    max_error: float | None = None,
+    pixels: float = 2000.0,
+    wrap: str = "auto",
+    max_triangles: int = 20_000_000,
+    channel: Channel = "mean",
+    assume: Literal["height"] | None = None,
+    report: Report | None = None,
+) -> tuple[Mesh, dict[str, Any]]: ...
 def subdivide(mesh: Mesh, levels: int, *, normals: NormalMode = "keep", report: Report | None = None) -> Mesh: ...
 def check_mesh(mesh: Mesh, *, for_baking: bool = False, for_tangents: bool = True) -> dict[str, Any]: ...
 def compare_meshes(

@@ -360,6 +360,7 @@ class Refusals(unittest.TestCase):
             lambda: relief.check_mesh(mesh),
             lambda: relief.compare_meshes(mesh, mesh),
             lambda: relief.decimate(mesh, triangles=4),
+            lambda: relief.displace(mesh, numpy.zeros((4, 4), numpy.uint8), height=1.0),
             lambda: relief.levels_of_detail(mesh, [4]),
             lambda: relief.subdivide(mesh, 1),
             lambda: relief.surface_distance(mesh, mesh),

@@ -150,6 +150,29 @@ class MeshTools(CommandLineCase):
         with self.assertRaises(relief.InvalidInput):
             relief.remesh(mesh, resolution=4)
 
+    def test_displace(self):
+        mesh, out = relief.read_mesh(DATA / "vase.obj"), self.folder / "out.glb"
+        heights, _ = relief.read_image(DATA / "bricks-height.png")
+        report = relief.run("relief-mesh", "displace", str(DATA / "vase.obj"), str(out), "--heights", str(DATA / "bricks-height.png"),
+                               "--height", "-0.05", "--zero", "0.5", "--max-error", "0.02", report=True)
+        moved, details = relief.displace(mesh, heights, height=-0.05, zero=0.5, max_error=0.02)
+        stored = relief.read_mesh(out)
+        numpy.testing.assert_array_equal(moved.positions, stored.positions)
+        numpy.testing.assert_array_equal(moved.triangles, stored.triangles)
+        numpy.testing.assert_allclose(moved.normals, stored.normals, atol=6e-8)  # The writer normalizes them again.
+        for key, value in (("max", "max_error"), ("limit", "limit"), ("triangles_above", "above_limit")):
+            self.assertEqual(report["error"][key], details[value], key)
+        self.assertEqual((details["wrap"], details["is_complete"]), (report["wrap"], True))
+        few, details = relief.displace(mesh, heights, height=0.05, pixels=300, max_triangles=7000)
+        self.assertFalse(details["is_complete"])
+        self.assertLessEqual(len(few.triangles), 7000)
+        size = numpy.linalg.norm(numpy.ptp(mesh.positions, axis=0))
+        self.assertAlmostEqual(details["limit"], 0.5 * size / 300, delta=1e-6 * size)
+        with self.assertRaisesRegex(relief.InvalidInput, "pixels must be at least 1"):
+            relief.displace(mesh, heights, height=0.05, pixels=0)
+        with self.assertRaisesRegex(relief.InvalidInput, "heights"):
+            relief.displace(mesh, relief.bump(heights), height=0.05)
+
     def test_check(self):
         out = self.folder / "vase.glb"
         self.run_tool("relief-mesh", "process", DATA / "vase.obj", out, "--normals", "angle", "--tangents", "lengyel")

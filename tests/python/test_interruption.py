@@ -65,6 +65,8 @@ class Interruption(unittest.TestCase):
         self.expect_end(lambda: relief.decimate(self.dense, max_error=1e-3))
         self.expect_end(lambda: relief.levels_of_detail(self.dense, [200000, 1000]))
         self.expect_end(lambda: relief.subdivide(self.low, levels=8))
+        waves = numpy.random.default_rng(1).random((1024, 1024), numpy.float32)
+        self.expect_end(lambda: relief.displace(self.low, waves, height=0.1, max_error=1e-4))
         self.expect_end(lambda: relief.surface_distance(self.dense, self.low))
 
     def test_unwrapping_ends(self):
