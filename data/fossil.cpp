@@ -45,7 +45,7 @@ ShellPoint shell_point(const Shell& shell, const glm::dvec2& at) {
     const double radius = std::max(glm::length(offset), 0.012);
     const double turned = std::atan2(offset.y, offset.x) - shell.turn;
     const double angle = turned - two_pi * std::floor(turned / two_pi);
-    // How many whorls a point is inside of the outline.
+    // The number of whorls whose outline has the point inside.
     const double inside = angle / two_pi - 1.0 - std::log(radius) / std::log(growth);
     if (inside < 0.0) return {};
     const double whorl = std::floor(inside);

@@ -48,7 +48,7 @@ struct Rendering {
 /// A way to render, as a function of a quantity that charts vary, such as the roughness.
 using RenderedMethod = MethodOn<double, Rendering>;
 
-/// How images are compared with the reference image.
+/// The comparison of images with the reference image.
 enum class PictureMetric {
     flip,     ///< FLIP of 8-bit sRGB.
     percent,  ///< The difference of linear light, in percent of the reference.

@@ -26,7 +26,7 @@ struct ChannelFile {
 /// The values of one property: an image or a constant.
 using ChannelInput = std::variant<double, ChannelFile>;
 
-/// What is packed, and for which engine.
+/// The maps to pack, and the engine that they are for.
 struct PackContents {
     std::optional<ChannelInput> occlusion, roughness, smoothness, metalness;
     Engine engine = Engine::gltf;

@@ -11,7 +11,7 @@
 namespace relief::tools {
 namespace {
 
-/// What a word says about a map.
+/// The meaning of a word in the name of a map.
 struct MapWord {
     std::string_view word;
     std::optional<MapKind> kind;

@@ -208,7 +208,7 @@ SourceMap recognized(const fs::path& file, const TexturesRequest& request,
     return source;
 }
 
-/// Of two normal maps with opposite directions of green, the one of the engine is used.
+/// Uses that of two normal maps with opposite directions of green which the engine expects.
 void choose_normal_map(TextureSet& set, Engine engine, Report& report) {
     const Green wanted = rules_of(engine).green;
     const auto has_green = [&](const SourceMap& source, Green green) {

@@ -30,7 +30,7 @@ struct ReshapeRequest {
     FileWords words;
     std::optional<ModelFormat> format;  ///< Of files in an output folder.
     NormalMode normals = NormalMode::keep;
-    /// How the distance between IN and OUT is measured; `full`: at all vertices and inside the
+    /// The measurement of the distance between IN and OUT; `full`: at all vertices and inside the
     /// triangles.
     std::optional<Measuring> measuring;
     ReportOptions report;

@@ -128,7 +128,7 @@ struct Reshaped {
     ChangedModel changed;
     Measuring measuring = Measuring::none;
     std::optional<SurfaceDistance> distance;
-    /// What --max-normal-error limits, in degrees; absent if all vertices are new.
+    /// The error that --max-normal-error limits, in degrees; absent if all vertices are new.
     std::optional<double> corner_angle;
     bool with_conditions = false;
     ConditionCounts conditions;

@@ -30,9 +30,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the words of a remedy with the names of the files.
-std::vector<std::string> words_of(std::string_view remedy, const fs::path& input,
-                                  const fs::path& output) {
+/// Returns the arguments of a remedy with the names of the files.
+std::vector<std::string> command_line_of(std::string_view remedy, const fs::path& input,
+                                         const fs::path& output) {
     std::vector<std::string> words = split(remedy, ' ');
     for (std::string& word : words) {
         if (word == "IN") word = as_argument(input).string();
@@ -162,7 +162,7 @@ std::string fix_images(const fs::path& input, const fs::path& output,
         const fs::path next =
             folder.path() / std::to_string(step) / (stem_of(images.at(index), index) + ".png");
         fs::create_directories(next.parent_path());
-        const std::string error = run(words_of(remedy.command, file, next));
+        const std::string error = run(command_line_of(remedy.command, file, next));
         if (!error.empty()) return error;
         file = next;
     }
@@ -193,7 +193,7 @@ CheckFix fix(const CheckedItem& item, const fs::path& output) {
                 done.error = fix_images(input, done.output, std::span(remedies).subspan(i));
                 return done;
             }
-            done.error = run(words_of(remedies[i].command, input, done.output));
+            done.error = run(command_line_of(remedies[i].command, input, done.output));
             if (!done.error.empty()) return done;
             input = done.output;
         }

@@ -126,7 +126,7 @@ class ImageCheck {
     ImageCheck(const KnownImage& known, CheckedItem& item)
         : known_(known), is_fixable_(can_be_fixed(item.file)), item_(item) {}
 
-    /// Of an embedded image.
+    /// Checks an embedded image.
     ImageCheck(const KnownImage& known, const EmbeddedImage& image, CheckedItem& item)
         : known_(known),
           place_(image.place),

@@ -230,7 +230,7 @@ std::string remedy_text(const CheckedItem& item, const CheckFinding& finding) {
     const bool is_of_image =
         finding.rule->id.starts_with("map/") || finding.rule->id.starts_with("texture/");
     if (is_of_image && item.kind == CheckedKind::model) {
-        // Of an embedded image, which the command alone does not reach.
+        // The image is embedded, and the command alone does not reach it.
         if (!finding.is_fixable || finding.severity < CheckSeverity::warning)
             return "export it again";
         return fmt::format("relief check {} --fix -o fixed", quoted(as_argument(item.file)));

@@ -19,7 +19,7 @@ namespace relief::tools {
 struct CheckInput {
     std::filesystem::path file;
     CheckedKind kind = CheckedKind::model;
-    /// Of a model: images beside it whose name is that of the model and a word for the kind of the
+    /// The images beside a model whose name is that of the model and a word for the kind of the
     /// map, "rock_normal.png" for "rock.obj".
     std::vector<UsedImage> paired;
 };

@@ -40,7 +40,7 @@ struct MakeRequest {
     std::string from;
 };
 
-/// What is known of the dense model after it is read.
+/// The properties of the dense model that are known after it is read.
 struct SourceFacts {
     std::string format;  ///< "glTF"; of the first file.
     std::size_t triangles = 0;
@@ -60,7 +60,7 @@ make::AssetSource read_source(const DenseModel& model, SourceFacts& facts, Findi
 /// The dense model of a job. If its axis is automatic, the first file decides.
 DenseModel dense_model(const MakeRequest& request, const Job& job);
 
-/// What a stage used besides the time in Stages.
+/// The resources that a stage used besides the time in Stages.
 struct StageUse {
     std::string stage;
     std::uint64_t peak_bytes = 0;  ///< Of the process, up to the end of the stage.

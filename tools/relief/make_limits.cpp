@@ -43,7 +43,7 @@ std::string text_of(const GrowthStep& step) {
                        step.growth == Growth::triangles ? "triangles" : "size of maps");
 }
 
-const char* word_of(Growth growth) {
+const char* growth_name(Growth growth) {
     switch (growth) {
         case Growth::triangles:
             return "triangles";
@@ -187,7 +187,7 @@ Json limits_json(const LossLimits& limits, const std::vector<LimitAttempt>& atte
                                             : "max_picture_error";
                  }
                  if (attempt.next) {
-                     json["next"] = word_of(attempt.next->growth);
+                     json["next"] = growth_name(attempt.next->growth);
                      json["factor"] = attempt.next->factor;
                  }
                  return json;

@@ -26,7 +26,7 @@ struct LossLimits {
 
 enum class LossLimit { degrees, flip };
 
-/// What the next asset has more of.
+/// The quantity that grows in the next asset.
 enum class Growth { triangles, size, bits };
 
 /// The next step of the search.

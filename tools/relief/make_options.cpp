@@ -510,15 +510,16 @@ std::vector<MakeOption> output_options() {
 }
 
 /// Returns the words of an option without words of its own.
-Words words_of_value(const Json& value) {
+Words arguments_of_value(const Json& value) {
     if (value.is_null()) return {};
     if (value.is_boolean()) return value.get<bool>() ? Words{""} : Words{};
     if (value.is_number_float()) return {fmt::format("{}", value.get<double>())};
     return {value.is_string() ? value.get<std::string>() : value.dump()};
 }
 
-Words words_of(const MakeOption& option, const MakeRequest& request) {
-    return option.words != nullptr ? option.words(request) : words_of_value(option.value(request));
+Words arguments_of(const MakeOption& option, const MakeRequest& request) {
+    return option.words != nullptr ? option.words(request)
+                                   : arguments_of_value(option.value(request));
 }
 
 std::string useless_reason(const MakeOption& option, const MakeRequest& request) {
@@ -571,14 +572,14 @@ std::string options_line(const MakeRequest& request) {
     std::string line;
     for (const MakeOption& option : make_options()) {
         if (!useless_reason(option, request).empty()) continue;
-        for (const std::string& word : words_of(option, request))
+        for (const std::string& word : arguments_of(option, request))
             line += fmt::format(" --{}{}{}", option.name, word.empty() ? "" : " ", word);
     }
     return line;
 }
 
 std::string option_text(const MakeOption& option, const MakeRequest& request) {
-    const Words words = words_of(option, request);
+    const Words words = arguments_of(option, request);
     if (words.empty()) return "off";
     return words.front().empty() ? "on" : fmt::format("{}", fmt::join(words, ","));
 }

@@ -22,7 +22,7 @@ double length_of(const glm::dvec3& v) {
     return std::sqrt(glm::dot(v, v));
 }
 
-/// How far a shape is from a disk: 1 for a disk, more for long or jagged ones.
+/// The distance of a shape from a disk: 1 for a disk, more for long or jagged ones.
 double elongation(double perimeter, double area) {
     return perimeter * perimeter / (4.0 * pi * area);
 }

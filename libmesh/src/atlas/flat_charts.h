@@ -26,7 +26,7 @@ struct FlatChart {
     double area = 0.0;  ///< Of the surface.
 };
 
-/// How charts are flattened, and the limits of a chart in the plane.
+/// The method that flattens charts, and the limits of a chart in the plane.
 struct FlatnessLimits {
     Flattening method = Flattening::arap;
     /// The largest permitted ratio of a triangle's singular values, and of its areas.

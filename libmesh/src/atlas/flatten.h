@@ -80,7 +80,8 @@ std::vector<glm::dvec2> unfolded(const AtlasSurface& surface, const ChartMesh& c
 /// Projects a chart along the mean of its normals.
 std::vector<glm::dvec2> projected(const AtlasSurface& surface, const ChartMesh& chart);
 
-/// How a chart is flattened. Triangles from this area on should not exceed the stretch limit.
+/// The options of flattening a chart. Triangles from this area on should not exceed the stretch
+/// limit.
 struct FlatteningTask {
     Flattening method = Flattening::arap;
     double max_stretch = 4.0;
@@ -98,7 +99,7 @@ struct FlatteningTask {
 std::vector<glm::dvec2> flattened(const AtlasSurface& surface, const ChartMesh& chart,
                                   std::vector<glm::dvec2> start, const FlatteningTask& task);
 
-/// How a triangle is stretched by its coordinates.
+/// The stretch of a triangle by its coordinates.
 struct Stretch {
     double largest = 0.0;   ///< Larger singular value of the map from the surface to the plane.
     double smallest = 0.0;  ///< Smaller one; negative if the triangle is inverted.

@@ -84,7 +84,7 @@ struct Pose {
     std::vector<RowRun> lower;  ///< Empty for small masks.
 };
 
-/// How to place charts: in which order, and by which preference among rotations.
+/// The order in which charts are placed, and the preference among their rotations.
 struct Rule {
     std::vector<std::uint32_t> order;
     /// The cost of a place is its upper edge, plus its lower edge and its left edge with these

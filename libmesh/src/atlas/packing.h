@@ -21,7 +21,7 @@ struct PackingOptions {
     std::optional<double> texels_per_unit;  ///< Of the surface; absent: as large as possible.
 };
 
-/// Where a chart is: first rotated about the origin, then shifted.
+/// The place of a chart: first rotated about the origin, then shifted.
 struct Placement {
     glm::dvec2 direction{1.0, 0.0};  ///< The image of the x axis, unit.
     glm::dvec2 offset{0.0};          ///< Texels, y up.

@@ -118,8 +118,8 @@ std::optional<NoiseByHeight> noise_by_height(std::span<const HeightTile> tiles);
 
 /// The quantization of JPEG.
 struct BlockQuantization {
-    /// Of the coefficients of 8 x 8 texels, in the unit of heights. Coefficients that are always 0
-    /// have the largest possible step, and unquantized ones have 0.
+    /// The steps of the coefficients of 8 x 8 texels, in the unit of heights. Coefficients that are
+    /// always 0 have the largest possible step, and unquantized ones have 0.
     std::array<double, 64> steps{};
 };
 

@@ -30,7 +30,7 @@ struct FanInput {
     /// triangles of both windings are there. Empty if none is doubled.
     std::span<const std::uint32_t> stacks{};
     std::span<const std::uint8_t> doubled{};
-    /// Whether all corners at a position belong to one fan unless a triangle there is doubled.
+    /// True if all corners at a position belong to one fan unless a triangle there is doubled.
     bool joins_positions = false;
 };
 

@@ -79,7 +79,7 @@ DisplacedSurface::DisplacedSurface(const Mesh& mesh, const Topology& topology,
     for (std::size_t i = 0; i < points.size(); ++i)
         points[i].base = glm::dvec3(mesh.positions[topology.position_vertex[i]]);
 
-    // Where the surface is cut, a vertex of the mesh stands at several points.
+    // A vertex of the mesh stands at several points where the surface is cut.
     std::unordered_map<std::uint64_t, std::uint32_t> number;
     for (std::size_t t = 0; t < topology.triangles.size(); ++t) {
         const std::uint32_t source = topology.source_triangle[t];

@@ -41,7 +41,7 @@ struct GridTriangle {
     std::uint32_t range;                ///< The material range.
 };
 
-/// Where the surface crosses an edge of the grid.
+/// A place at which the surface crosses an edge of the grid.
 struct Hit {
     float at;  ///< From the lower point, 0 to 1.
     std::uint32_t triangle;
@@ -53,7 +53,7 @@ struct EdgeHits {
     Hit last;
 };
 
-/// Where the surface closes a gap between triangles: it crosses an edge without a hit.
+/// A place at which the surface closes a gap between triangles: it crosses an edge without a hit.
 struct GridGap {
     std::uint64_t key = 0;  ///< RemeshGrid::gap_key()
     double at = 0.5;        ///< From the lower point, 0 to 1.
@@ -132,7 +132,7 @@ class RemeshGrid {
 };
 
 /// Finds where triangles cross the edges of the grid; or, for a shell, where edges enter the
-/// surroundings of triangles, whose points are marked as near.
+/// neighborhood of triangles, whose points are marked as near.
 void find_hits(RemeshGrid& grid, bool shell);
 
 /// Decides which points are outside: all that are reached from outside.

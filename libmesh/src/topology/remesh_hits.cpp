@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the edges of a grid cross triangles, or enter their surroundings.
+// Finds where the edges of a grid cross triangles, or enter their neighborhood.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -150,8 +150,8 @@ bool is_near(const RemeshGrid& grid, const glm::ivec3& point) {
             1) != 0;
 }
 
-/// Returns where an edge leaves the surroundings of a triangle, as a part of the edge: by regula
-/// falsi, because the distance is nearly linear. The surroundings are convex, so that there is one
+/// Returns where an edge leaves the neighborhood of a triangle, as a part of the edge: by regula
+/// falsi, because the distance is nearly linear. The neighborhood is convex, so that there is one
 /// place.
 double end_of_surroundings(const GridTriangle& triangle, const glm::ivec3& point, int axis,
                            int side) {
@@ -176,7 +176,7 @@ double end_of_surroundings(const GridTriangle& triangle, const glm::ivec3& point
 }
 
 /// Finds where the edges from points near a triangle to points that are not near any leave the
-/// surroundings of the triangle.
+/// neighborhood of the triangle.
 void leave_surroundings(const RemeshGrid& grid, std::uint32_t index, std::vector<FoundHit>& found) {
     const GridTriangle& triangle = grid.triangles()[index];
     visit_points(triangle, shell_distance, [&](const glm::ivec3& point) {
@@ -237,7 +237,7 @@ void store_hits(RemeshGrid& grid, const std::vector<std::vector<FoundHit>>& foun
                 const std::uint16_t number = hit->edge;
                 grid.bricks[b].crossed[number / 512][number / 64 % 8] |= std::uint64_t{1}
                                                                          << number % 64;
-                // Of hits at the last place, the first triangle counts.
+                // The first triangle counts among hits at the last place.
                 for (++hit; hit != to && hit->edge == number; ++hit) {
                     if (hit->at != edge.last.at) edge.last = {hit->at, hit->triangle};
                 }

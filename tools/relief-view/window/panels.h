@@ -86,7 +86,7 @@ void draw_view_panel(const PanelInput& input);
 /// The panel headers from top to bottom.
 std::vector<std::string> panel_names();
 
-/// Where the panels of a window are.
+/// The places of the panels of a window.
 struct PanelArrangement {
     /// The window is too small for panels beside most of a picture: they are folded until they are
     /// asked for, and the toolbar is above the picture.

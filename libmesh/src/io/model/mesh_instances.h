@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// How often, and how large, the meshes of a document stand in its scene.
+/// Counts the uses of the meshes of a document in its scene, with their scales.
 #pragma once
 
 #include <cstddef>
