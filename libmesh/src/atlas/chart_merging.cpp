@@ -140,7 +140,7 @@ class ChartMerger {
             const auto [a, b] = charts_at(seam);
             const double length = surface_.edge_length(seam);
             const double cosine =
-                glm::dot(surface_.normals[seam / 3], surface_.normals[surface_.opposite[seam] / 3]);
+                glm::dot(surface_.normal(seam / 3), surface_.normal(surface_.opposite[seam] / 3));
             borders.push_back({a, b, length, cosine < crease_cosine ? length : 0.0});
         }
         // Stable, so that lengths are added in a fixed order.

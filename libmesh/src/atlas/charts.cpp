@@ -47,7 +47,7 @@ class SmallClusters {
             double perimeter = 0.0;
             for (Corner corner = 3 * face; corner < 3 * face + 3; ++corner)
                 perimeter += surface.edge_length(corner);
-            clusters_.push_back({surface.areas[face] * surface.normals[face], surface.areas[face],
+            clusters_.push_back({surface.areas[face] * surface.normal(face), surface.areas[face],
                                  surface.areas[face], perimeter, 1.0});
         }
     }
@@ -280,7 +280,7 @@ void fill_clusters(const AtlasSurface& surface, Segmentation& segmentation) {
                 const double length = length_of(sum);
                 segmentation.cluster[faces.begin + i] = cluster[i];
                 normals[block][cluster[i]] =
-                    glm::vec3(length > 0.0 ? sum / length : surface.normals[faces.begin + i]);
+                    glm::vec3(length > 0.0 ? sum / length : surface.normal(faces.begin + i));
             }
         }
     });

@@ -489,9 +489,9 @@ std::vector<glm::dvec2> unfolded(const AtlasSurface& surface, const ChartMesh& c
 std::vector<glm::dvec2> projected(const AtlasSurface& surface, const ChartMesh& chart) {
     glm::dvec3 sum(0.0);
     for (const std::uint32_t face : chart.faces)
-        sum += surface.areas[face] * surface.normals[face];
+        sum += surface.areas[face] * surface.normal(face);
     const glm::dvec3 normal = direction_or_zero(sum);
-    const auto axes = axes_of(normal == glm::dvec3(0.0) ? surface.normals[chart.faces[0]] : normal);
+    const auto axes = axes_of(normal == glm::dvec3(0.0) ? surface.normal(chart.faces[0]) : normal);
     std::vector<glm::dvec2> result(chart.positions.size());
     for (std::size_t v = 0; v < result.size(); ++v) {
         const glm::dvec3& position = surface.positions[chart.positions[v]];

@@ -96,7 +96,7 @@ class PartComparison {
     /// The height of the neighbor's third vertex above the face, positive in a fold.
     [[nodiscard]] double height(Corner edge) const {
         const Corner apex = previous_in_triangle(surface_.opposite[edge]);
-        return glm::dot(surface_.normals[edge / 3],
+        return glm::dot(surface_.normal(edge / 3),
                         surface_.position(apex) - surface_.position(edge));
     }
 

@@ -111,7 +111,7 @@ void sort_faces(std::vector<OrderedFace>& faces, std::size_t vertex_count) {
     faces = std::move(sorted);
 }
 
-/// Fills the faces, their normals and areas.
+/// Fills the faces and their areas.
 /// \return for each face, its first triangle
 std::vector<std::uint32_t> fill_faces(const Mesh& mesh, std::span<const bool> is_sound,
                                       std::span<const std::uint32_t> number, AtlasSurface& surface,
@@ -140,18 +140,14 @@ std::vector<std::uint32_t> fill_faces(const Mesh& mesh, std::span<const bool> is
             report.add("repeated triangle", "triangle", each.triangle,
                        "has the texture coordinates of the first one");
         } else {
-            const std::array<glm::dvec3, 3> p{surface.positions[each.vertices.x],
-                                              surface.positions[each.vertices.y],
-                                              surface.positions[each.vertices.z]};
-            const glm::dvec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
-            const double length = std::sqrt(glm::dot(normal, normal));
+            const glm::dvec3 across = surface.doubled_area(each.vertices);
+            const double length = std::sqrt(glm::dot(across, across));
             if (!(length > 0.0)) {
                 report.add("triangle without area", "triangle", each.triangle,
                            "has the texture coordinates (0, 0) at its corners");
                 continue;
             }
             surface.faces.push_back(each.vertices);
-            surface.normals.push_back(normal / length);
             surface.areas.push_back(0.5 * length);
             source.push_back(each.triangle);
         }
@@ -180,7 +176,7 @@ class EdgeJoiner {
             const glm::dvec3 edge =
                 surface_.position(next_in_triangle(corner)) - surface_.position(corner);
             triangles_.push_back({corner, ascends(corner),
-                                  outward_from(surface_.normals[triangle_of(corner)], edge),
+                                  outward_from(surface_.normal(triangle_of(corner)), edge),
                                   corner});
         }
         for (const auto& [a, b] : pairs_.join(triangles_))
@@ -284,7 +280,7 @@ void mark_borders(const Mesh& mesh, const AtlasConstraints& constraints,
         surface.is_border[a] =
             (constraints.at_materials && materials[source[a / 3]] != materials[source[b / 3]]) ||
             high > 2.0F * low ||
-            glm::dot(surface.normals[a / 3], surface.normals[b / 3]) < min_cosine;
+            glm::dot(surface.normal(a / 3), surface.normal(b / 3)) < min_cosine;
     }
 }
 

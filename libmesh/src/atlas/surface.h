@@ -13,6 +13,7 @@
 /// one first; all others are cut apart.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
@@ -34,7 +35,6 @@ struct AtlasSurface {
     std::vector<glm::dvec3> positions;
     double unit = 1.0;  ///< The length in object space of 1 here.
     std::vector<glm::uvec3> faces;
-    std::vector<glm::dvec3> normals;  ///< Unit normals of the faces.
     std::vector<double> areas;
     /// For each edge, the edge of its neighbor; or no_corner.
     std::vector<Corner> opposite;
@@ -49,6 +49,16 @@ struct AtlasSurface {
 
     [[nodiscard]] const glm::dvec3& position(Corner corner) const {
         return positions[faces[corner / 3][static_cast<glm::length_t>(corner % 3)]];
+    }
+    /// Returns the vector along the normal of a triangle whose length is twice its area.
+    [[nodiscard]] glm::dvec3 doubled_area(const glm::uvec3& face) const {
+        return glm::cross(positions[face.y] - positions[face.x],
+                          positions[face.z] - positions[face.x]);
+    }
+    /// Returns the unit normal of a face.
+    [[nodiscard]] glm::dvec3 normal(std::uint32_t face) const {
+        const glm::dvec3 across = doubled_area(faces[face]);
+        return across / std::sqrt(glm::dot(across, across));
     }
     [[nodiscard]] double edge_length(Corner corner) const {
         return glm::length(position(next_in_triangle(corner)) - position(corner));
