@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Relief mapping: the methods that intersect a ray with a height map.
+/// Tests: tests/mesh/bump/height_field_test.cpp.
 #pragma once
 
 #include <array>
+#include <glm/glm.hpp>
+#include <memory>
 
 #include "relief/export.h"
 #include "relief/mesh/enum_names.h"
+#include "relief/mesh/image.h"
+#include "relief/mesh/report.h"
 
 namespace RELIEF_API relief {
 
@@ -40,5 +45,83 @@ inline constexpr auto enum_names<HeightMethod> =
                                            {"relief_mapping", HeightMethod::relief_mapping},
                                            {"relaxed_cones", HeightMethod::relaxed_cones},
                                            {"maximum_mipmaps", HeightMethod::maximum_mipmaps}});
+
+namespace detail {
+struct HeightFieldData;
+}  // namespace detail
+
+/// A ray in texel space (see HeightMethod). Texels may be anisotropic in object space: the caller
+/// divides directions by the width and height of a texel.
+struct HeightRay {
+    glm::dvec2 texcoord{0.0};   ///< Of the beginning; outside of [0,1] by the wrap modes.
+    glm::dvec3 direction{0.0};  ///< x to the right, y down in the image, z into the depth; texels.
+    double black_depth = 0.0;   ///< The depth D of black; from 0.
+    double start_depth = 0.0;   ///< The depth of the beginning; from 0 to D.
+};
+
+/// How a ray ends.
+enum class HeightRayEnd {
+    hit,
+    left,      ///< It leaves through the surface of white, or has no direction; from the surface of
+               ///< white, only directions with z > 0 enter.
+    exceeded,  ///< It is longer than the bound on patches or steps.
+};
+
+/// Where a ray ends. Without a hit, this is the last point that it reached.
+struct HeightHit {
+    glm::dvec2 texcoord{0.0};  ///< Continues that of the ray: it is not reduced to [0,1].
+    double depth = 0.0;        ///< In texels below white.
+    /// The slope of the bilinear heights at the point: the height in texels that is gained per
+    /// texel to the right and per texel down in the image. The normal in texel space, with z up,
+    /// is (-slope.x, -slope.y, 1).
+    glm::dvec2 slope{0.0};
+    HeightRayEnd end = HeightRayEnd::left;
+    /// first_hit(): patches visited.
+    int lookups = 0;
+};
+
+/// A height map as a surface: bilinear between the centers of texels, as textures are sampled.
+/// White (1.0) is at depth 0, black at depth D. Copies share their heights.
+class HeightField {
+  public:
+    /// The bound of first_hit() on patches.
+    static constexpr int max_patches = 1 << 16;
+
+    /// \param heights  one channel of 8, 16 or 32 bits
+    /// \param wraps  beyond the border; Wrap::clamp continues the border texel
+    /// \param report  counts heights that are not finite, which are filled as in
+    ///         normals_from_height(), and heights outside of 0 to 1, which are clamped
+    /// \throws InvalidInput if the image is empty or has more than one channel
+    HeightField(const Image& heights, const Wraps& wraps, Report& report = IgnoredReport());
+
+    /// The width and height of the map in texels.
+    [[nodiscard]] glm::ivec2 size() const;
+    [[nodiscard]] const Wraps& wraps() const;
+
+    /// Returns the height at finite texture coordinates, from 0 to 1.
+    [[nodiscard]] double height(const glm::dvec2& texcoord) const;
+
+    /// Returns the derivatives of height() per texel to the right and down in the image. At the
+    /// center lines of texels they are those to the right and below.
+    [[nodiscard]] glm::dvec2 slope(const glm::dvec2& texcoord) const;
+
+    /// Intersects a ray with the bilinear patches in their order along the ray.
+    ///
+    /// \param ray  with finite coordinates and finite, nonnegative depths
+    /// \return the first point at which the ray is not above the surface: the first root of the
+    ///         quadratic of a patch, in double precision. A ray that begins at or below the surface
+    ///         hits there; one that goes down hits at depth D at the latest, or exceeds
+    ///         `max_patches`. Only + - * / and square roots decide, so results are the same
+    ///         everywhere. Rays that are not finite end as HeightRayEnd::left
+    ///
+    /// A ray within rounding of a ridge may miss it. The cost is about 1.3 patches per texel
+    /// of distance along the map.
+    ///
+    /// Source: [Amanatides and Woo 1987] for the order of patches.
+    [[nodiscard]] HeightHit first_hit(const HeightRay& ray) const;
+
+  private:
+    std::shared_ptr<const detail::HeightFieldData> data_;
+};
 
 }  // namespace relief

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The heights of a HeightField, and the intersection of a ray with one of their patches.
+#pragma once
+
+#include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
+
+#include "image/bilinear_heights.h"
+
+namespace relief::detail {
+
+struct HeightFieldData {
+    BilinearHeights heights;
+};
+
+/// Returns where a ray is first not above a patch: the smallest t from 0 on, or infinity.
+///
+/// \param within  the beginning of the ray in the patch, from 0 to 1
+/// \param direction  texels per t: right, down, and into the depth
+/// \param start_depth  the depth at t = 0
+///
+/// With the heights A, B (right), C (below) and E of the corners, K = A - B - C + E and the point
+/// (a, b), the height is A + (B - A) a + (C - A) b + K a b. The ray is above the surface by
+/// q2 t^2 + q1 t + q0, where q2 = -D K dx dy, q1 = -dz - D ((B - A + K b) dx + (C - A + K a) dy)
+/// and q0 = D (1 - h(a, b)) - s.
+inline double patch_hit(const BilinearPatch& patch, const glm::dvec2& within,
+                        const glm::dvec3& direction, double start_depth, double black_depth) {
+    constexpr double never = std::numeric_limits<double>::infinity();
+    const double above = black_depth * (1.0 - patch.at(within.x, within.y)) - start_depth;
+    if (above <= 0.0) return 0.0;
+    const glm::dvec2 slope = patch.slope(within.x, within.y);
+    const double square = -black_depth * patch.twist() * direction.x * direction.y;
+    const double linear =
+        -direction.z - black_depth * (slope.x * direction.x + slope.y * direction.y);
+    const double discriminant = linear * linear - 4.0 * square * above;
+    if (discriminant < 0.0) return never;
+    // The smaller of the positive roots, without the difference of nearly equal numbers.
+    if (linear < 0.0) return 2.0 * above / (std::sqrt(discriminant) - linear);
+    if (square < 0.0) return -(linear + std::sqrt(discriminant)) / (2.0 * square);
+    return never;
+}
+
+}  // namespace relief::detail
