@@ -46,16 +46,10 @@ BilinearHeights usable_heights(const Image& image, const Wraps& wraps, Report& r
     return {heights, field.width, field.height, wraps};
 }
 
-/// Returns a coordinate in texels from the center of the first one, less whole periods of the map.
-double near_map(double texcoord, int count, Wrap wrap) {
-    const double texels = texcoord * count - 0.5;
-    if (wrap == Wrap::clamp) {
-        // No ray is long enough to come from there to the map.
-        constexpr double far_away = 0x1p40;
-        return std::clamp(texels, -far_away, far_away);
-    }
-    const double period = wrap == Wrap::mirror ? 2.0 * count : count;
-    return texels - period * std::floor(texels / period);
+std::shared_ptr<const HeightFieldData> field_data(BilinearHeights heights) {
+    std::vector<MaximumLevel> levels = maximum_levels(heights);
+    return std::make_shared<const HeightFieldData>(
+        HeightFieldData{std::move(heights), std::move(levels)});
 }
 
 /// The patches along one axis.
@@ -85,8 +79,7 @@ class PatchSteps {
 }  // namespace
 
 HeightField::HeightField(const Image& heights, const Wraps& wraps, Report& report)
-    : data_(std::make_shared<const HeightFieldData>(
-          HeightFieldData{usable_heights(heights, wraps, report)})) {}
+    : data_(field_data(usable_heights(heights, wraps, report))) {}
 
 glm::ivec2 HeightField::size() const {
     return {data_->heights.width(), data_->heights.height()};

@@ -1,19 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The heights of a HeightField, and the intersection of a ray with one of their patches.
+/// The heights of a HeightField with the maxima of their patches, and the intersection of a ray
+/// with one patch.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <glm/glm.hpp>
 #include <limits>
+#include <vector>
 
 #include "image/bilinear_heights.h"
 
 namespace relief::detail {
 
+/// The maxima of square groups of patches. A patch has the number of its upper left texel.
+struct MaximumLevel {
+    int width = 0;
+    int height = 0;
+    std::vector<float> maxima;
+
+    [[nodiscard]] float at(int column, int row) const {
+        return maxima[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(column)];
+    }
+};
+
 struct HeightFieldData {
     BilinearHeights heights;
+    /// Level 0 has the maximum of each patch. A node of level n covers 2^n x 2^n patches; each
+    /// level has the size of the map divided by 2^n, rounded down but at least 1, as mip levels
+    /// have. The last nodes of a row or column also cover the patches that remain.
+    std::vector<MaximumLevel> levels;
 };
+
+/// Returns the levels for HeightFieldData, down to one node.
+std::vector<MaximumLevel> maximum_levels(const BilinearHeights& heights);
+
+/// Returns a coordinate in texels from the center of the first one, less whole periods of the map.
+inline double near_map(double texcoord, int count, Wrap wrap) {
+    const double texels = texcoord * count - 0.5;
+    if (wrap == Wrap::clamp) {
+        // No ray is long enough to come from there to the map.
+        constexpr double far_away = 0x1p40;
+        return std::clamp(texels, -far_away, far_away);
+    }
+    const double period = wrap == Wrap::mirror ? 2.0 * count : count;
+    return texels - period * std::floor(texels / period);
+}
 
 /// Returns where a ray is first not above a patch: the smallest t from 0 on, or infinity.
 ///

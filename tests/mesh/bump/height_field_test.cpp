@@ -13,8 +13,8 @@
 #include "relief/mesh/execution.h"
 #include "relief/mesh/height_march.h"
 #include "relief/mesh/report.h"
+#include "support/hard_meshes.h"
 #include "support/images.h"
-#include "support/invariants.h"
 
 namespace relief {
 namespace {

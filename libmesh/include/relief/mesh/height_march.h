@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Relief mapping: the methods that intersect a ray with a height map.
-/// Tests: tests/mesh/bump/height_field_test.cpp.
+/// Tests: tests/mesh/bump/height_field_test.cpp, tests/mesh/bump/height_march_test.cpp.
 #pragma once
 
 #include <array>
@@ -76,7 +76,8 @@ struct HeightHit {
     /// is (-slope.x, -slope.y, 1).
     glm::dvec2 slope{0.0};
     HeightRayEnd end = HeightRayEnd::left;
-    /// first_hit(): patches visited.
+    /// Of first_hit(): patches visited. Of march(): texels or filtered values that are read, where
+    /// a value that is needed twice counts once, and a patch of four texels as four.
     int lookups = 0;
 };
 
@@ -119,6 +120,19 @@ class HeightField {
     ///
     /// Source: [Amanatides and Woo 1987] for the order of patches.
     [[nodiscard]] HeightHit first_hit(const HeightRay& ray) const;
+
+    /// Finds a hit by a method of shaders, with the same steps as `shaders/height_march.glsl`, but
+    /// in double precision.
+    ///
+    /// \param ray  its start_depth is ignored: it begins at the surface of white
+    /// \param cones  for HeightMethod::relaxed_cones: the second channel of a cone map of the same
+    ///         size as a field, HeightField(channel_of(cone_map, 1), wraps)
+    /// \return the point that the method takes for the hit. HeightRayEnd::exceeded is possible only
+    ///         for HeightMethod::maximum_mipmaps; the others take what they have
+    /// \throws InvalidInput if the settings are out of range, or cones are missing or have another
+    ///         size
+    [[nodiscard]] HeightHit march(const HeightRay& ray, const HeightMarch& method,
+                                  const HeightField* cones = nullptr) const;
 
   private:
     std::shared_ptr<const detail::HeightFieldData> data_;
