@@ -12,7 +12,7 @@
 uniform sampler2D bump_texture;
 uniform float bump_strength;
 
-float height_at(vec2 texcoord) { return texture(bump_texture, texcoord).r; }
+//@include <bump_lookup>
 
 vec3 normal_of_heights() {
     vec2 size = vec2(textureSize(bump_texture, 0));
@@ -20,11 +20,21 @@ vec3 normal_of_heights() {
     vec2 reach = max(pixel, vec2(1.0));  // In texels.
     vec2 right = vec2(reach.x / size.x, 0.0);
     vec2 down = vec2(0.0, reach.y / size.y);
-    vec2 rise = vec2(height_at(texcoord_surface + right) - height_at(texcoord_surface - right),
-                     height_at(texcoord_surface - down) - height_at(texcoord_surface + down));
+    vec2 rise = vec2(height_beside(right) - height_beside(-right),
+                     height_beside(-down) - height_beside(down));
     return vec3(-bump_strength * rise / (2.0 * reach), 1.0);
 }
 
 vec3 bump_normal = normal_of_heights();
 
 vec3 normal_tangent() { return bump_normal; }
+
+//@part displaced implements bump_lookup
+// The height beside the place where the view meets a relief.
+
+float height_beside(vec2 offset) {
+    return textureGrad(bump_texture, texcoord_displaced + offset, texcoord_right, texcoord_up).r;
+}
+
+//@neutral bump_lookup
+float height_beside(vec2 offset) { return texture(bump_texture, texcoord_surface + offset).r; }

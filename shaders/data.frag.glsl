@@ -5,6 +5,7 @@
 out vec4 color;
 
 //@include <second_texcoord>
+//@include <displacement>
 //@include <alpha>
 //@include <view>
 

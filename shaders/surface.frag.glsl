@@ -6,6 +6,7 @@ invariant out vec4 color;
 
 //@include "light.glsl#lighting"
 //@include <second_texcoord>
+//@include <displacement>
 //@include <alpha>
 //@include <surface>
 //@include <lights>

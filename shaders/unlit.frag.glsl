@@ -6,6 +6,7 @@ out vec4 color;
 uniform vec3 diffuse_color;
 
 //@include <second_texcoord>
+//@include <displacement>
 //@include <alpha>
 //@include <diffuse_texture>
 //@include <vertex_color>

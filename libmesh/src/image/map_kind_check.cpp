@@ -44,6 +44,7 @@ std::vector<MapKind> accepted_kinds(TextureSlot slot) {
         case TextureSlot::clearcoat_normal:
             return {MapKind::normal};
         case TextureSlot::bump:
+        case TextureSlot::height:
             return {MapKind::height};
         case TextureSlot::base_color:
         case TextureSlot::emission:

@@ -4,6 +4,7 @@
 // Tests: tests/shade/effects/effects_test.cpp.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <string_view>
@@ -29,6 +30,21 @@ void drop_tone(Features& f) {
     f.exposure = false;
 }
 
+/// Displaced coordinates show where a texture is looked up. Only maximum mipmaps compute with the
+/// border of the map.
+void drop_depth_mapping(Features& f) {
+    if (!shows_displacement(f)) f.depth_mapping = DepthMapping::none;
+    if (f.depth_mapping != DepthMapping::maximum_mipmaps)
+        f.height_wrap_u = f.height_wrap_v = Wrap::repeat;
+}
+
+/// The displacement of what is looked up belongs to the surface.
+void keep_depth_mapping(const Features& f, Features& kept) {
+    kept.depth_mapping = f.depth_mapping;
+    kept.height_wrap_u = f.height_wrap_u;
+    kept.height_wrap_v = f.height_wrap_v;
+}
+
 void drop_second_texcoords(Features& f) {
     std::uint32_t sampled = 0;
     for_each_second_bit(f, [&](const TextureSlotInfo&, std::uint32_t bit) { sampled |= bit; });
@@ -51,11 +67,14 @@ Features unlit_only(const Features& f) {
     result.alpha = f.alpha;
     result.opacity_texture = f.opacity_texture;
     result.second_texcoords = f.second_texcoords;
+    result.interpolation = Interpolation::per_pixel;
+    keep_depth_mapping(f, result);
     result.output = f.output;
     result.tone_mapping = f.tone_mapping;
     result.exposure = f.exposure;
     drop_alpha(result);
     drop_tone(result);
+    drop_depth_mapping(result);
     drop_second_texcoords(result);
     return result;
 }
@@ -218,6 +237,8 @@ Features data_features(const Features& f) {
     kept.output = OutputCoding::linear;
     keep_deformation(f, kept);
     keep_mask(f, kept);
+    // Shadow maps count fragments, too, and see the surface from the light.
+    if (f.view != DebugView::overdraw) keep_depth_mapping(f, kept);
     switch (f.view) {
         case DebugView::geometric_normal:
             kept.interpolation = Interpolation::flat;
@@ -245,6 +266,7 @@ Features data_features(const Features& f) {
         default:
             break;
     }
+    drop_depth_mapping(kept);
     drop_second_texcoords(kept);
     return kept;
 }
@@ -289,8 +311,16 @@ Features canonical(Features f) {
     drop_dependents(f);
     drop_alpha(f);
     drop_tone(f);
+    drop_depth_mapping(f);
     drop_second_texcoords(f);
     return f;
+}
+
+bool detail::shows_displacement(const Features& f) {
+    if (f.detail != NormalDetail::none) return true;
+    return std::any_of(slot_effects.begin(), slot_effects.end(), [&](const SlotEffect& sampling) {
+        return sampling.effect != nullptr && f.*sampling.effect;
+    });
 }
 
 std::string describe(const Features& f) {
@@ -311,6 +341,13 @@ std::string describe(const Features& f) {
         if ((f.second_texcoords >> i & 1U) != 0)
             parts.push_back(fmt::format("{} at second coordinates", texture_slots[i].sampler));
     }
+    const auto add_wrap = [&](const char* axis, Wrap wrap) {
+        if (wrap == Wrap::repeat) return;
+        parts.push_back(
+            fmt::format("{} {} heights", wrap == Wrap::clamp ? "clamped" : "mirrored", axis));
+    };
+    add_wrap("along u", f.height_wrap_u);
+    add_wrap("along v", f.height_wrap_v);
     if (f.view != DebugView::picture)
         parts.push_back(fmt::format("view of {}", debug_view_info(f.view).name));
     constexpr std::array<const char*, 4> codings = {"linear", "clamped", "sRGB", "half"};

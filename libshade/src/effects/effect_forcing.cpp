@@ -152,7 +152,7 @@ void add_requested(const ForcingSubject& subject, const Requests& requests, Forc
 void add_neutral(const ForcingSubject& subject, const Requests& requests, Features& f) {
     for (const EffectRow& row : effect_rows()) {
         const Effect& effect = row.effect;
-        if (requests.off(effect.name) || effect.on(f)) continue;
+        if (requests.off(effect.name) || effect.on(f) || row.only_by_name) continue;
         if (!refusal_reason(subject, row).empty()) continue;
         Features with = f;
         effect.set(with, true);
@@ -165,6 +165,7 @@ ForcedDraw forced_draw(const ForcingSubject& subject, const Requests& requests) 
     remove_effects(requests, draw.features);
     add_requested(subject, requests, draw);
     if (requests.base() == EffectBase::all_neutral) add_neutral(subject, requests, draw.features);
+    set_height_wraps(subject.material, draw.features);
     const Features shown = canonical(draw.features);
     for (const EffectRow& row : effect_rows()) {
         if (!requests.on(row.effect.name) || row.effect.on(shown)) continue;

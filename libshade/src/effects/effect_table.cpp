@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "effects/light_rows.h"
@@ -577,6 +578,59 @@ std::vector<EffectRow> color_rows() {
     };
 }
 
+// Depth mapping
+
+const char* method_label(HeightMethod method) {
+    constexpr std::array labels{"parallax mapping", "parallax occlusion mapping", "relief mapping",
+                                "relaxed cones", "maximum mipmaps"};
+    return labels.at(static_cast<std::size_t>(method));
+}
+
+constexpr DepthMapping depth_mapping_of(HeightMethod method) {
+    return static_cast<DepthMapping>(static_cast<int>(method) + 1);
+}
+static_assert(depth_mapping_of(HeightMethod::maximum_mipmaps) == DepthMapping::maximum_mipmaps);
+
+Decision of_depth_mapping(Subject s, HeightMethod method) {
+    const std::optional<ReliefMap>& map = s.material.height_map;
+    if (!map) return {false, s.name + " has no height map"};
+    if (map->method != method)
+        return {false, fmt::format("{} requests {}", s.name, method_label(map->method))};
+    const Decision texture = of_texture(s, true);
+    if (!texture.on) return texture;
+    if (map->depth == 0.0F) return {false, s.name + " has a relief without depth"};
+    if (method == HeightMethod::relaxed_cones && !map->cones)
+        return {false, s.name + " has no cone map"};
+    if (!s.relief_shift) return {true, s.name + " has a relief, seen from any distance"};
+    const bool on = *s.relief_shift >= min_relief_shift;
+    return {on, fmt::format("the relief of {} moves what is seen by at most {:.2g} pixels{}",
+                            s.name, *s.relief_shift,
+                            on ? "" : fmt::format(", less than {}", min_relief_shift))};
+}
+
+/// A height map with the method of a row, which may be forced on where the bound leaves it out.
+template <HeightMethod Method>
+bool has_relief_for(Forced s) {
+    const std::optional<ReliefMap>& map = s.material.height_map;
+    return map && map->method == Method && (Method != HeightMethod::relaxed_cones || map->cones);
+}
+
+template <HeightMethod Method>
+EffectRow depth_row() {
+    return {.effect = one_value<&F::depth_mapping, depth_mapping_of(Method)>(
+                method_label(Method), "no texture shows the displacement"),
+            .decide = [](Subject s) { return of_depth_mapping(s, Method); },
+            .choice = "the relief and its method are the material's choice",
+            .neutral = has_relief_for<Method>,
+            .only_by_name = true};
+}
+
+std::vector<EffectRow> depth_rows() {
+    return {depth_row<HeightMethod::parallax>(), depth_row<HeightMethod::parallax_occlusion>(),
+            depth_row<HeightMethod::relief_mapping>(), depth_row<HeightMethod::relaxed_cones>(),
+            depth_row<HeightMethod::maximum_mipmaps>()};
+}
+
 std::vector<EffectRow> normal_rows() {
     return {
         {.effect = one_value<&F::detail, NormalDetail::normal_map>("normal map", no_normal),
@@ -836,6 +890,12 @@ Features lights_of(const Scene& scene) {
 
 }  // namespace
 
+void detail::set_height_wraps(const Material& material, Features& f) {
+    const bool counts = f.depth_mapping == DepthMapping::maximum_mipmaps && material.height_map;
+    f.height_wrap_u = counts ? material.height_map->texture.wrap_u : Wrap::repeat;
+    f.height_wrap_v = counts ? material.height_map->texture.wrap_v : Wrap::repeat;
+}
+
 DrawSubject detail::draw_subject(const Scene& scene, const Material& material,
                                  const std::string& name, const Mesh& mesh,
                                  const Instance* instance, ShadowTerm shadow) {
@@ -864,7 +924,7 @@ const std::vector<EffectRow>& detail::effect_rows() {
     static const std::vector<EffectRow> all = [] {
         std::vector<EffectRow> rows = model_rows();
         for (const auto& more : {interpolation_rows(), deformation_rows(), color_rows(),
-                                 normal_rows(), lighting_rows(), picture_rows()})
+                                 normal_rows(), depth_rows(), lighting_rows(), picture_rows()})
             rows.insert(rows.end(), more.begin(), more.end());
         return rows;
     }();

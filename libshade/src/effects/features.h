@@ -35,6 +35,11 @@ inline bool is_deformed(const Features& f) {
     return f.morphing || f.skinning;
 }
 
+/// True if the view shows texture coordinates displaced, if anything is looked up at them.
+inline bool is_displaced(const Features& f) {
+    return f.depth_mapping != DepthMapping::none;
+}
+
 /// True if the view is a term that reflections only dim: no mirror image is looked up.
 inline bool has_black_mirror(const Features& f) {
     return is_term(f.view) && f.view != DebugView::reflection;
@@ -101,7 +106,7 @@ EnvironmentNeeds environment_needs(const FramePlan& plan);
 
 /// The effect that samples the texture of a slot.
 struct SlotEffect {
-    bool Features::*effect;          ///< Null for the maps of Features::detail.
+    bool Features::*effect;          ///< Null for the maps of detail and depth_mapping.
     const char* hidden;              ///< The reason why canonical() drops it.
     bool Features::*base = nullptr;  ///< EffectRow::base
     const char* part = "";           ///< EffectRow::part
@@ -113,6 +118,8 @@ inline constexpr std::array<SlotEffect, texture_slot_count> slot_effects{{
     {&Features::diffuse_texture, "there is no scattered light to tint"},
     {&Features::specular_texture, "there are no highlights"},
     {&Features::metallic_roughness_texture, "the material is not metallic-roughness"},
+    {nullptr, ""},
+    {nullptr, ""},
     {nullptr, ""},
     {nullptr, ""},
     {&Features::occlusion_texture, "there is no light from all around"},
@@ -167,6 +174,12 @@ void for_each_sampled(const Features& f, const Visit& visit) {
 /// Returns the bits of the textures that a material looks up at the second texture coordinates.
 std::uint32_t second_texcoords_of(const Material& material);
 
+/// True if these features look up a texture that displaced coordinates would change.
+bool shows_displacement(const Features& f);
+
+/// Sets the wrap modes of the material's height map, which the program of maximum mipmaps has.
+void set_height_wraps(const Material& material, Features& f);
+
 /// Returns the texture coordinates at which a texture is looked up.
 inline const std::vector<glm::vec2>& texcoords_of(const Mesh& mesh, const Texture& texture) {
     return texture.second_texcoords ? mesh.texcoords_2 : mesh.texcoords;
@@ -195,7 +208,22 @@ struct DrawSubject {
     Features lights;  ///< The scene's lights: counts, falloff, ranges, highlight colors, shadow.
     const MeshPose* pose = nullptr;  ///< Null if nothing can deform the mesh.
     bool is_occluded = false;        ///< Some open share of the instance is not 1.
+    /// The bound of relief_shift(); none if the draw is seen from any camera.
+    std::optional<double> relief_shift = std::nullopt;
 };
+
+/// The least displacement on the screen, in pixels, for which depth mapping is planned.
+inline constexpr double min_relief_shift = 0.5;
+
+/// Returns an upper bound of the distance, in pixels, by which the material's relief displaces what
+/// the picture shows of some triangles; none if it is not known: without a camera, for a deformed
+/// mesh, if the size of the height map cannot be read, or if the relief reaches the eye.
+///
+/// A point of the relief and the point of the surface above it are at most a depth apart. On the
+/// screen they are as far apart as that distance at the nearest corner, times the sine of the
+/// steepest angle between view and normal.
+std::optional<double> relief_shift(const Scene& scene, const Instance& instance,
+                                   const MaterialRange& range, const FrameSettings& settings);
 
 /// \param instance  null: a mesh at rest without open shares
 /// \param shadow    shadow_term() of the scene
@@ -222,6 +250,8 @@ struct EffectRow {
     bool follows_pose = false;       ///< The decision depends on DrawSubject::pose alone.
     bool Features::*base = nullptr;  ///< The effect without which canonical() drops it, or null.
     const char* part = "";  ///< The part of the fragment shader that it alone chooses, or "".
+    /// Forced on, the effect may change the picture, within a bound: only requests by name add it.
+    bool only_by_name = false;
 };
 
 /// A frame-wide effect. All but the skybox follow from the draws and the settings.

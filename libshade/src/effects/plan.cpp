@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The effect plan: decides every effect of every draw by the table of effects, then the frame-wide
-// effects, which follow from the draws. Pure: reads the scene, no files and no OpenGL.
-// Tests: tests/shade/effects/plan_test.cpp.
+// effects, which follow from the draws. Reads the scene and no files, except for the sizes of
+// height maps; uses no OpenGL. Tests: tests/shade/effects/plan_test.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,8 +31,9 @@ struct DrawDecisions {
 /// \param name  the material's, for the reasons
 DrawDecisions decide(const Scene& scene, const Material& material, const std::string& name,
                      const Mesh& mesh, const Instance* instance, OutputCoding output,
-                     ShadowTerm shadow) {
-    const DrawSubject subject = draw_subject(scene, material, name, mesh, instance, shadow);
+                     ShadowTerm shadow, std::optional<double> relief_shift = std::nullopt) {
+    DrawSubject subject = draw_subject(scene, material, name, mesh, instance, shadow);
+    subject.relief_shift = relief_shift;
     DrawDecisions decisions;
     decisions.reasons.reserve(effect_rows().size() + 1);  // And that of computed tangents.
     Features requested = subject.lights;
@@ -43,6 +44,7 @@ DrawDecisions decide(const Scene& scene, const Material& material, const std::st
         decisions.reasons.push_back({row.effect.name, decision.on, std::move(decision.reason)});
     }
     requested.second_texcoords = second_texcoords_of(material);
+    set_height_wraps(material, requested);
     decisions.features = canonical(requested);
     for (EffectReason& reason : decisions.reasons) {
         const EffectRow& row = *find_effect(reason.effect);
@@ -63,13 +65,14 @@ void set_reason(EffectReasons& reasons, EffectReason reason) {
 }
 
 DrawPlan plan_draw(const Scene& scene, std::size_t instance, const MaterialRange& range,
-                   OutputCoding output, ShadowTerm shadow) {
+                   const FrameSettings& settings, ShadowTerm shadow) {
     const std::size_t mesh_index = scene.instances[instance].mesh;
     const Mesh& mesh = scene.meshes[mesh_index];
     const Material& material =
         range.material ? scene.materials[*range.material] : default_material();
-    DrawDecisions decisions = decide(scene, material, material_label(scene, range.material), mesh,
-                                     &scene.instances[instance], output, shadow);
+    DrawDecisions decisions = decide(
+        scene, material, material_label(scene, range.material), mesh, &scene.instances[instance],
+        settings.output, shadow, relief_shift(scene, scene.instances[instance], range, settings));
     const Features& f = decisions.features;
     const bool uses_tangents = lies_in_frame(f) && f.frame == TangentFrame::stored;
     const bool needs_tangents = uses_tangents && mesh.tangents.empty();
@@ -105,16 +108,18 @@ class SharedReasons {
     std::unordered_multimap<std::size_t, EffectReasons> known_;
 };
 
-/// Plans draws. Only poses and open shares distinguish the instances of a mesh, so that all others
-/// share one plan for each material.
+/// Plans draws. Only poses, open shares and reliefs distinguish the instances of a mesh, so that
+/// all others share one plan for each material.
 class DrawPlanner {
   public:
-    DrawPlanner(const Scene& scene, OutputCoding output)
-        : scene_(scene), output_(output), shadow_(shadow_term(scene)) {}
+    DrawPlanner(const Scene& scene, const FrameSettings& settings)
+        : scene_(scene), settings_(settings), shadow_(shadow_term(scene)) {}
 
     DrawPlan plan(std::size_t index, const MaterialRange& range) {
         const Instance& instance = scene_.instances[index];
-        if (instance.pose || !instance.open_shares->empty()) return new_plan(index, range);
+        const bool has_relief = range.material && scene_.materials[*range.material].height_map;
+        if (instance.pose || !instance.open_shares->empty() || has_relief)
+            return new_plan(index, range);
         const auto [entry, is_new] = plans_.try_emplace({instance.mesh, range.material});
         if (is_new) entry->second = new_plan(index, range);
         DrawPlan plan = entry->second;
@@ -127,13 +132,13 @@ class DrawPlanner {
     using Key = std::pair<std::size_t, std::optional<std::uint32_t>>;
 
     DrawPlan new_plan(std::size_t index, const MaterialRange& range) {
-        DrawPlan plan = plan_draw(scene_, index, range, output_, shadow_);
+        DrawPlan plan = plan_draw(scene_, index, range, settings_, shadow_);
         plan.reasons = reasons_.share(std::move(plan.reasons));
         return plan;
     }
 
     const Scene& scene_;
-    OutputCoding output_;
+    const FrameSettings& settings_;
     ShadowTerm shadow_;
     std::map<Key, DrawPlan> plans_;
     SharedReasons reasons_;
@@ -269,7 +274,7 @@ void plan_frame(const Scene& scene, const FrameSettings& settings, FramePlan& pl
 
 FramePlan plan_effects(const Scene& scene, const FrameSettings& settings) {
     FramePlan plan;
-    DrawPlanner planner(scene, settings.output);
+    DrawPlanner planner(scene, settings);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
         const MaterialRange whole{0, static_cast<std::uint32_t>(mesh.triangles.size()),

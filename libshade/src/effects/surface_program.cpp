@@ -48,6 +48,32 @@ std::string at_second_texcoords(std::string text, const Features& f) {
     return text;
 }
 
+/// Changes the lookups at the coordinates of the surface to displaced ones (height_march.glsl).
+std::string at_displaced_texcoords(const std::string& text) {
+    constexpr std::string_view function = "texture(";
+    constexpr std::string_view coordinates = ", texcoord_surface";
+    std::string changed;
+    std::size_t copied = 0;
+    for (std::size_t at = text.find(function); at != std::string::npos;
+         at = text.find(function, at + 1)) {
+        const std::size_t sampler = at + function.size();
+        const std::size_t comma = text.find_first_of(",)", sampler);
+        if (comma == std::string::npos || text.compare(comma, coordinates.size(), coordinates) != 0)
+            continue;
+        const std::size_t suffix = comma + coordinates.size();
+        const std::size_t end = text.find(')', suffix);
+        const std::string set = text.substr(suffix, end - suffix);
+        if (!set.empty() && set != "_2") continue;
+        changed += text.substr(copied, at - copied);
+        changed += fmt::format(
+            "textureGrad({}, texcoord_displaced{}, texcoord_right{}, "
+            "texcoord_up{}",
+            text.substr(sampler, comma - sampler), set, set, set);
+        copied = end;
+    }
+    return changed + text.substr(copied);
+}
+
 /// The embedded parts of one stage's program.
 class StageParts {
   public:
@@ -135,6 +161,8 @@ SurfaceProgram detail::surface_program_with(const Features& features, GlslVersio
                            assemble(chosen.fragment_main, chosen.fragment,
                                     at_vertices ? ShaderConstants{} : constants, version, texts)};
     program.fragment.text = at_second_texcoords(std::move(program.fragment.text), features);
+    if (is_displaced(features))
+        program.fragment.text = at_displaced_texcoords(program.fragment.text);
     return program;
 }
 

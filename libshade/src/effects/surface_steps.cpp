@@ -97,17 +97,19 @@ bool passes_position(By f) {
     const Needs here = fragment_needs(f);
     const Needs at_vertex = vertex_needs(f);
     return here.position || here.view || at_vertex.position || at_vertex.view ||
-           has_derived_frame(f) || (here.normal && is_flat(f));
+           has_derived_frame(f) || is_displaced(f) || (here.normal && is_flat(f));
 }
 bool passes_normal(By f) {
-    return has_frame(f) || vertex_needs(f).normal || (fragment_needs(f).normal && !is_flat(f));
+    const bool is_needed = fragment_needs(f).normal || is_displaced(f);
+    return has_frame(f) || vertex_needs(f).normal || (is_needed && !is_flat(f));
 }
 bool passes_texcoord(By f) {
     bool is_looked_up = false;
     for_each_sampled(f,
                      [&](const TextureSlotInfo&, bool is_second) { is_looked_up |= !is_second; });
-    return is_looked_up || f.detail != NormalDetail::none || has_derived_frame(f) ||
-           f.clearcoat_normal_map || f.anisotropy_texture || f.view == DebugView::texcoords;
+    return is_looked_up || is_displaced(f) || f.detail != NormalDetail::none ||
+           has_derived_frame(f) || f.clearcoat_normal_map || f.anisotropy_texture ||
+           f.view == DebugView::texcoords;
 }
 
 /// A part, and whether these features choose it for its step.
@@ -227,17 +229,41 @@ void choose_layers(ShaderSteps& steps, By f) {
 void choose_normal(ShaderSteps& steps, By f) {
     const bool normal = fragment_needs(f).normal;
     choose(steps,
-           {{"inputs.glsl#position", true},
-            {"normal.glsl#flat", normal && is_flat(f)},
+           {{"normal.glsl#flat", normal && is_flat(f)},
             {"normal.glsl#interpolated", normal && !is_flat(f) && f.detail == NormalDetail::none},
             {"normal.glsl#perturbed", is_perturbed(f)},
             {"normal_map.glsl#object_space", normal && f.detail == NormalDetail::object_normal_map},
             {"normal_map.glsl#tangent_space", has_detail(f, NormalDetail::normal_map)},
             {"bump_map.glsl#heights", has_detail(f, NormalDetail::bump_map)},
+            {"bump_map.glsl#displaced", has_detail(f, NormalDetail::bump_map) && is_displaced(f)},
             {"tangent_frame.glsl#stored", has_stored_frame(f)},
             {"tangent_frame.glsl#derivatives", has_derived_frame(f)},
             {"normal.glsl#both_sides", normal && f.double_sided},
             {"specular_antialiasing.glsl#toksvig", f.specular_antialiasing}});
+}
+
+/// Chooses the displacement of texture coordinates by a relief.
+void choose_displacement(ShaderSteps& steps, By f) {
+    const auto uses = [&](DepthMapping method) { return f.depth_mapping == method; };
+    const bool mipmaps = uses(DepthMapping::maximum_mipmaps);
+    const auto columns = [&](Wrap wrap) { return mipmaps && f.height_wrap_u == wrap; };
+    const auto rows = [&](Wrap wrap) { return mipmaps && f.height_wrap_v == wrap; };
+    choose(steps, {{"inputs.glsl#position", true},
+                   {"height_march.glsl#displacement", is_displaced(f)},
+                   {"height_march.glsl#second", is_displaced(f) && f.second_texcoords != 0},
+                   {"height_march.glsl#smooth", is_displaced(f) && !is_flat(f)},
+                   {"height_march.glsl#facet", is_displaced(f) && is_flat(f)},
+                   {"height_march.glsl#parallax", uses(DepthMapping::parallax)},
+                   {"height_march.glsl#parallax_occlusion", uses(DepthMapping::parallax_occlusion)},
+                   {"height_march.glsl#relief_mapping", uses(DepthMapping::relief_mapping)},
+                   {"height_march.glsl#relaxed_cones", uses(DepthMapping::relaxed_cones)},
+                   {"height_march.glsl#maximum_mipmaps", mipmaps},
+                   {"height_march.glsl#columns_repeated", columns(Wrap::repeat)},
+                   {"height_march.glsl#columns_clamped", columns(Wrap::clamp)},
+                   {"height_march.glsl#columns_mirrored", columns(Wrap::mirror)},
+                   {"height_march.glsl#rows_repeated", rows(Wrap::repeat)},
+                   {"height_march.glsl#rows_clamped", rows(Wrap::clamp)},
+                   {"height_march.glsl#rows_mirrored", rows(Wrap::mirror)}});
 }
 
 /// Chooses lights of every kind, in the stage that computes them.
@@ -427,6 +453,7 @@ ChosenSteps chosen_steps(const Features& features) {
     ShaderSteps& steps = chosen.fragment;
     choose_colors(steps, features);
     choose_alpha(steps, features);
+    choose_displacement(steps, features);
     if (is_data(features.view)) {
         chosen.fragment_main = "data.frag.glsl";
         choose_view(steps, features);

@@ -215,6 +215,22 @@ Texture make_texture(const Api& api, const Image& image, std::string_view name, 
     return texture;
 }
 
+Texture make_texture(const Api& api, const std::vector<Image>& levels, std::string_view name) {
+    const Image& largest = levels.at(0);
+    check_size(api, largest, name);
+    Texture texture(api);
+    api->BindTexture(GL_TEXTURE_2D, texture.name());
+    set_sampling(api, GL_TEXTURE_2D, Sampling{});
+    set_swizzle(api, largest.channels);
+    const TexelFormat format = texel_format(largest, FloatStorage::full);
+    GLint level = 0;
+    for (const Image& image : levels)
+        upload_level(api, GL_TEXTURE_2D, level++, format, image);
+    api->BindTexture(GL_TEXTURE_2D, 0);
+    api.check(fmt::format("uploading texture '{}', {} x {}", name, largest.width, largest.height));
+    return texture;
+}
+
 Texture make_buffer_texture(const Api& api, const Buffer& buffer, GLenum format, std::size_t texels,
                             std::string_view name) {
     const auto limit = static_cast<std::size_t>(api.limits().buffer_texels);

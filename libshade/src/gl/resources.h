@@ -77,6 +77,10 @@ enum class FloatStorage { full, half };
 Texture make_texture(const Api& api, const Image& image, std::string_view name, bool mipmaps = true,
                      FloatStorage storage = FloatStorage::full);
 
+/// Uploads an image of data with its own levels, from the largest on; each is half as large as the
+/// one before, rounded down. Otherwise as above.
+Texture make_texture(const Api& api, const std::vector<Image>& levels, std::string_view name);
+
 /// Returns a sampler object: one image may be used with several.
 Sampler make_sampler(const Api& api, const Sampling& sampling);
 

@@ -118,7 +118,7 @@ bool blocks(const PreparedScene& prepared, const Hit& hit, Trace& trace) {
     const Material& material = prepared.material_of(hit.instance, hit.triangle);
     if (!casts_shadow(material)) return false;
     if (material.alpha_mode == AlphaMode::opaque) return true;
-    const Surface surface = surface_at(prepared, hit, material, trace);
+    const Surface surface = surface_at(prepared, hit, material, trace, false);
     return alpha_at({prepared, material, surface, trace}) >=
            static_cast<double>(material.alpha_cutoff);
 }

@@ -36,6 +36,7 @@
 #include "reference/recorder.h"
 #include "relief/export.h"
 #include "relief/mesh/frames.h"
+#include "relief/mesh/height_march.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/report.h"
@@ -309,6 +310,9 @@ struct PreparedScene {
     PreparedScene(const Scene& scene, Report& report);
 
     [[nodiscard]] const Material& material_of(std::uint32_t instance, std::uint32_t triangle) const;
+    /// Returns the relief of a triangle; null if it has none.
+    [[nodiscard]] const HeightField* relief_of(std::uint32_t instance,
+                                               std::uint32_t triangle) const;
     /// Returns the index of the range in its mesh.
     [[nodiscard]] std::size_t range_of(std::uint32_t instance, std::uint32_t triangle) const;
     [[nodiscard]] FlatCode flat_code(const NormalMap& map) const;
@@ -327,6 +331,8 @@ struct PreparedScene {
     std::map<float, detail::SheenAlbedo> sheen_albedos;  ///< By sheen roughness.
     std::optional<PictureBehind> behind;                 ///< If a surface is transmissive.
     std::unique_ptr<ShadowCasters> shadow;               ///< If a light casts one.
+    /// The reliefs of the materials, by their index.
+    std::map<std::uint32_t, HeightField> reliefs;
     std::map<float, detail::SheenAlbedos> sheen_tables;  ///< The same, if a texture multiplies it.
 };
 
@@ -338,7 +344,7 @@ struct Surface {
     glm::dvec3 coat_normal_world{0.0, 0.0, 1.0};  ///< The same with the clear coat's map alone.
     glm::dvec3 view_world{0.0, 0.0,
                           1.0};  ///< Unit, to the eye; the normal if the eye is at the surface.
-    glm::dvec2 texcoord{0.0};
+    glm::dvec2 texcoord{0.0};    ///< Where the view meets the relief, if there is one.
     glm::dvec2 texcoord_2{0.0};
     glm::dvec4 color{1.0};      ///< Interpolated vertex color.
     double open_share = 1.0;    ///< Interpolated from the vertices.
@@ -355,8 +361,9 @@ bool is_transmissive(const Material& material, const Mesh& mesh);
 /// Tells whether the hit shows the back of its triangle.
 bool is_back(const PreparedScene& prepared, const Hit& hit);
 
+/// \param from_eye  false: as light sees it, without the displacement by a relief
 Surface surface_at(const PreparedScene& prepared, const Hit& hit, const Material& material,
-                   Trace& trace);
+                   Trace& trace, bool from_eye = true);
 
 /// Returns the surface at a corner of the triangle that was hit, for light computed at vertices. No
 /// map bends its normal.

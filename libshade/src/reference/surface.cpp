@@ -242,6 +242,17 @@ void examine_maps(PreparedScene& prepared, const Scene& scene, std::uint32_t num
     }
 }
 
+/// Prepares the relief of a material that has one with a depth.
+void prepare_relief(PreparedScene& prepared, const Scene& scene, std::uint32_t number,
+                    Report& report) {
+    const std::optional<ReliefMap>& map = prepared.materials[number].height_map;
+    if (!map || map->depth == 0.0F) return;
+    if (map->method == HeightMethod::relaxed_cones && !map->cones) return;
+    const Image heights = channel_of(decode(scene.images[map->texture.image], ImageUse::data), 0);
+    prepared.reliefs.emplace(
+        number, HeightField(heights, {map->texture.wrap_u, map->texture.wrap_v}, report));
+}
+
 /// Decodes the textures of all materials that are on meshes with texture coordinates.
 void decode_textures(PreparedScene& prepared, const Scene& scene, Report& report) {
     std::set<std::uint32_t> textured;
@@ -257,6 +268,7 @@ void decode_textures(PreparedScene& prepared, const Scene& scene, Report& report
         Material& material = prepared.materials[number];
         leave_out_textures(scene, prepared.texels.unreadable(), number, material, report);
         examine_maps(prepared, scene, number, report);
+        prepare_relief(prepared, scene, number, report);
     }
 }
 
@@ -314,6 +326,14 @@ PreparedScene::PreparedScene(const Scene& described, Report& report)
             sheen_tables.emplace(model->sheen_roughness, sheen_albedo_tables(roughness));
         }
     }
+}
+
+const HeightField* PreparedScene::relief_of(std::uint32_t instance, std::uint32_t triangle) const {
+    const auto& ranges = instances[instance].mesh->material_ranges;
+    if (ranges.empty()) return nullptr;
+    const std::optional<std::uint32_t> material = ranges[range_of(instance, triangle)].material;
+    const auto relief = material ? reliefs.find(*material) : reliefs.end();
+    return relief == reliefs.end() ? nullptr : &relief->second;
 }
 
 std::size_t PreparedScene::range_of(std::uint32_t instance, std::uint32_t triangle) const {
@@ -518,6 +538,69 @@ Surface attributes_at(const PreparedScene& prepared, const Hit& hit) {
     return surface;
 }
 
+// Reliefs
+
+/// Returns the texels that a ray passes along both axes of a map for each texel of depth below the
+/// triangle, as shaders/height_march.glsl says; none if the ray does not enter.
+/// \param size  of the map in texels
+std::optional<glm::dvec2> texels_per_depth(const Triangle& triangle, const glm::dvec3& normal,
+                                           const glm::dvec3& view, const glm::dvec2& size) {
+    const auto& positions = triangle.instance.positions_world;
+    const auto& texcoords = triangle.instance.mesh->texcoords;
+    const glm::uvec3& corners = triangle.corners;
+    const glm::dvec3 p1 = positions[corners.y] - positions[corners.x];
+    const glm::dvec3 p2 = positions[corners.z] - positions[corners.x];
+    const glm::dvec2 t1 =
+        size * (glm::dvec2(texcoords[corners.y]) - glm::dvec2(texcoords[corners.x]));
+    const glm::dvec2 t2 =
+        size * (glm::dvec2(texcoords[corners.z]) - glm::dvec2(texcoords[corners.x]));
+    const double area = t1.x * t2.y - t1.y * t2.x;
+    const glm::dvec3 along_x = (p1 * t2.y - p2 * t1.y) / area;
+    const glm::dvec3 along_y = (p2 * t1.x - p1 * t2.x) / area;
+    const double texel = std::sqrt(glm::length(glm::cross(along_x, along_y)));
+    const double turned = glm::dot(normal, glm::cross(along_x, along_y));
+    const double toward = glm::dot(normal, view);
+    const glm::dvec2 moved(glm::dot(normal, glm::cross(view, along_y)),
+                           glm::dot(normal, glm::cross(along_x, view)));
+    const glm::dvec2 result = -moved * texel / (turned * toward);
+    // Not a number if the triangle has no area.
+    const bool enters = toward > 0.0 && glm::dot(result, result) < 1e12;
+    return enters ? std::optional(result) : std::nullopt;
+}
+
+/// Moves the texture coordinates of a surface to where the view meets its relief.
+void displace(const PreparedScene& prepared, const Hit& hit, const Material& material,
+              Surface& surface) {
+    const HeightField* const relief = prepared.relief_of(hit.instance, hit.triangle);
+    if (relief == nullptr || !surface.has_texcoord) return;
+    const Triangle triangle = triangle_of(prepared, hit);
+    const glm::dvec3 view =
+        glm::dvec3(prepared.eye_world) - prepared.eye_world.w * surface.position_world;
+    const bool is_flat = material.interpolation == Interpolation::flat;
+    const glm::dvec3 normal =
+        is_flat ? front_of_plane(triangle)
+                : direction_or_zero(triangle.interpolated(triangle.instance.normals_world));
+    const auto along = texels_per_depth(triangle, normal, view, glm::dvec2(relief->size()));
+    if (!along) return;
+    HeightRay ray;
+    ray.texcoord = surface.texcoord;
+    ray.direction = glm::dvec3(*along, 1.0);
+    ray.black_depth = static_cast<double>(material.height_map->depth);
+    const glm::dvec2 moved = relief->first_hit(ray).texcoord - surface.texcoord;
+    surface.texcoord += moved;
+    if (!surface.has_texcoord_2) return;
+    const auto edge = [&](const auto& texcoords, int corner) {
+        return glm::dvec2(texcoords[triangle.corners[corner]]) -
+               glm::dvec2(texcoords[triangle.corners.x]);
+    };
+    const Mesh& mesh = *triangle.instance.mesh;
+    const glm::dvec2 t1 = edge(mesh.texcoords, 1);
+    const glm::dvec2 t2 = edge(mesh.texcoords, 2);
+    const double area = t1.x * t2.y - t1.y * t2.x;
+    surface.texcoord_2 += edge(mesh.texcoords_2, 1) * (moved.x * t2.y - moved.y * t2.x) / area +
+                          edge(mesh.texcoords_2, 2) * (moved.y * t1.x - moved.x * t1.y) / area;
+}
+
 void face_viewer(const PreparedScene& prepared, const Hit& hit, Surface& surface) {
     if (is_back(prepared, hit)) {
         surface.normal_world = -surface.normal_world;
@@ -557,8 +640,9 @@ bool is_back(const PreparedScene& prepared, const Hit& hit) {
 }
 
 Surface surface_at(const PreparedScene& prepared, const Hit& hit, const Material& material,
-                   Trace& trace) {
+                   Trace& trace, bool from_eye) {
     Surface surface = attributes_at(prepared, hit);
+    if (from_eye) displace(prepared, hit, material, surface);
     surface.normal_world = front_normal(prepared, hit, material, surface.texcoord, trace);
     Material coat;
     coat.interpolation = material.interpolation;

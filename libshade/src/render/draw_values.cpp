@@ -102,6 +102,10 @@ std::map<std::string_view, Setter> member_setters() {
         {"normal_map_unscale", set_member<&DrawValues::normal_map_unscale>},
         {"normal_map_rounding", set_member<&DrawValues::normal_map_rounding>},
         {"bump_strength", set_member<&DrawValues::bump_strength>},
+        {"height_depth", set_member<&DrawValues::height_depth>},
+        {"height_layers", set_member<&DrawValues::height_layers>},
+        {"height_bisections", set_member<&DrawValues::height_bisections>},
+        {"height_steps", set_member<&DrawValues::height_steps>},
         {"exposure", set_member<&DrawValues::exposure>},
         {"shadow_from_object", set_member<&DrawValues::shadow_from_object>},
         {"shadow_lift", set_member<&DrawValues::shadow_lift>},
@@ -246,6 +250,12 @@ void set_material(DrawValues& values, const Material& material, const Scene& sce
     values.opacity = material.alpha_mode == AlphaMode::opaque ? 1.0F : material.opacity;
     values.alpha_cutoff = material.alpha_mode == AlphaMode::mask ? material.alpha_cutoff : 0.0F;
     if (material.bump_map) values.bump_strength = material.bump_map->strength;
+    if (const auto& map = material.height_map) {
+        values.height_depth = map->depth;
+        values.height_layers = static_cast<float>(map->layers);
+        values.height_bisections = static_cast<float>(map->bisections);
+        values.height_steps = static_cast<float>(map->max_steps);
+    }
     values.exposure = scene.exposure;
     if (!scene.environment) return;
     values.environment_intensity = scene.environment->intensity;

@@ -90,6 +90,10 @@ struct DrawValues {
     glm::vec3 normal_map_unscale{1.0F};
     float normal_map_rounding = 0.0F;
     float bump_strength = 0.0F;
+    float height_depth = 0.0F;  ///< In texels; the other members are numbers of ReliefMap.
+    float height_layers = 1.0F;
+    float height_bisections = 0.0F;
+    float height_steps = 1.0F;
 
     float exposure = 1.0F;
 

@@ -93,7 +93,11 @@ inline Planned planned(const Scene& scene, const DrawPlan& draw) {
 /// How the texture of a slot is decoded.
 inline ImagePurpose purpose_of(const UsedTexture& used) {
     const TextureSlotInfo& slot = slot_info(used.slot);
-    return {slot.use, slot.neutral == NeutralTexel::flat, used.slot == TextureSlot::bump};
+    ImagePurpose purpose{slot.use, slot.neutral == NeutralTexel::flat,
+                         used.slot == TextureSlot::bump || used.slot == TextureSlot::height};
+    if (used.slot == TextureSlot::height)
+        purpose.maxima = {used.texture->wrap_u, used.texture->wrap_v};
+    return purpose;
 }
 
 inline bool is_blended(const Draw& draw) {

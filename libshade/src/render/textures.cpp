@@ -36,8 +36,13 @@ const std::vector<const Effect*>& effects_of(TextureSlot slot) {
         std::array<std::vector<const Effect*>, texture_slot_count> effects;
         for (std::size_t i = 0; i < texture_slot_count; ++i)
             effects[i].push_back(&find_effect(texture_slots[i].effect)->effect);
-        effects[static_cast<std::size_t>(TextureSlot::normal)].push_back(
-            &find_effect("object-space normal map")->effect);
+        const auto add = [&](TextureSlot sampled, const char* effect) {
+            effects[static_cast<std::size_t>(sampled)].push_back(&find_effect(effect)->effect);
+        };
+        add(TextureSlot::normal, "object-space normal map");
+        for (const char* const effect :
+             {"parallax mapping", "parallax occlusion mapping", "relief mapping", "relaxed cones"})
+            add(TextureSlot::height, effect);
         return effects;
     }();
     return all[static_cast<std::size_t>(slot)];
@@ -191,7 +196,12 @@ std::shared_ptr<const GpuImage> TextureCache::find(const ImageSource& source,
 
 std::shared_ptr<const GpuImage> TextureCache::add(const ImageSource& source,
                                                   const ImagePurpose& purpose, const Image& image) {
-    GpuImage made{gl::make_texture(*api_, image, source.name), image.bits()};
+    GpuImage made{purpose.maxima ? gl::make_texture(*api_,
+                                                    height_levels(image, purpose.maxima->first,
+                                                                  purpose.maxima->second),
+                                                    source.name)
+                                 : gl::make_texture(*api_, image, source.name),
+                  image.bits()};
     if (purpose.normals) made.flat = detected_flat_code(source, image);
     if (purpose.normals || purpose.heights)
         made.content = unstated_content(image, stated_description(source));

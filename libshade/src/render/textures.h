@@ -67,9 +67,15 @@ struct ImagePurpose {
     ImageUse use = ImageUse::color;
     bool normals = false;  ///< For normal maps the code of zero is detected.
     bool heights = false;
+    /// For heights of a relief: levels of maxima, for a map that wraps like this in u and v.
+    std::optional<std::pair<Wrap, Wrap>> maxima = std::nullopt;
 
     friend auto operator<=>(const ImagePurpose&, const ImagePurpose&) = default;
 };
+
+/// Returns the levels of a relief's heights (height_march.glsl#field) as images of one channel with
+/// the same number of bits: the red channel within [0,1], where holes are filled, and the maxima.
+std::vector<Image> height_levels(const Image& image, Wrap wrap_u, Wrap wrap_v);
 
 /// An image on the GPU.
 struct GpuImage {

@@ -107,7 +107,7 @@ void read_material(const relief::detail::JsonCursor& object, JsonImages& images,
 
 Environment environment_from(const relief::detail::JsonCursor& object, JsonImages& images);
 
-/// Returns a normal or bump map: a texture, or an object with one.
+/// Returns a normal, bump or height map: a texture, or an object with one.
 template <typename Map>
 Map map_from(const relief::detail::JsonCursor& cursor, JsonImages& images) {
     Map map;
@@ -139,6 +139,9 @@ void read_value(const relief::detail::JsonCursor& cursor, const Field& field, Js
         const bool is_angle =
             field.unit == FieldUnit::radians || field.unit == FieldUnit::radians_per_second;
         value = is_angle ? radians_from(cursor) : cursor.number(field.range.min, field.range.max);
+    } else if constexpr (std::is_same_v<Value, int>) {
+        value = cursor.whole_number(static_cast<int>(field.range.min),
+                                    static_cast<int>(field.range.max));
     } else if constexpr (std::is_same_v<Value, glm::vec3>) {
         value = field.unit == FieldUnit::color             ? color_in(cursor)
                 : field.unit == FieldUnit::world_direction ? direction_from(cursor)
@@ -158,7 +161,8 @@ void read_value(const relief::detail::JsonCursor& cursor, const Field& field, Js
         value = one_of(cursor, enum_names<Value>);
     } else if constexpr (std::is_same_v<Value, Texture>) {
         value = images.texture(cursor);
-    } else if constexpr (std::is_same_v<Value, NormalMap> || std::is_same_v<Value, BumpMap>) {
+    } else if constexpr (std::is_same_v<Value, NormalMap> || std::is_same_v<Value, BumpMap> ||
+                         std::is_same_v<Value, ReliefMap>) {
         value = map_from<Value>(cursor, images);
     } else {
         static_assert(has_fields<Value>);
@@ -222,7 +226,8 @@ Json value_json(const Field& field, const Value& value, const ImageName& name) {
         Json numbers = vector_json(glm::vec3(value));
         numbers.push_back(number_json(value.a));
         return numbers;
-    } else if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, std::string>) {
+    } else if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, int> ||
+                         std::is_same_v<Value, std::string>) {
         return value;
     } else if constexpr (std::is_enum_v<Value>) {
         return enum_name(value);

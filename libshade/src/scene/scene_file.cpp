@@ -72,16 +72,31 @@ void note_image_file(const ImageSource& source) {
 
 namespace {
 
-/// Returns the text entries of an image. \throws FileError if it cannot be read
-std::map<std::string, std::string> metadata_of(const ImageSource& source) {
+/// Returns the header of an image; of a decoded one, its size. \throws FileError if it cannot be
+/// read
+ImageInfo info_of(const ImageSource& source) {
     if (const auto* file = std::get_if<std::filesystem::path>(&source.source))
-        return read_image_info(*file).metadata;
+        return read_image_info(*file);
     if (const auto* bytes = std::get_if<Shared<std::vector<std::byte>>>(&source.source))
-        return read_image_info(std::span(**bytes), source.name).metadata;
-    return {};
+        return read_image_info(std::span(**bytes), source.name);
+    const Image& image = std::get<Shared<Image>>(source.source);
+    ImageInfo info;
+    info.width = image.width;
+    info.height = image.height;
+    return info;
+}
+
+std::map<std::string, std::string> metadata_of(const ImageSource& source) {
+    return info_of(source).metadata;
 }
 
 }  // namespace
+
+glm::ivec2 detail::image_size(const ImageSource& source) {
+    if (!source.fault.empty()) throw FileError(source.origin, source.fault);
+    const ImageInfo info = info_of(source);
+    return {info.width, info.height};
+}
 
 FlatCode detected_flat_code(const ImageSource& source, const Image& image) {
     return detect_flat_code(image, metadata_of(source));

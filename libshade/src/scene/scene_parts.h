@@ -44,6 +44,10 @@ inline bool is_finite(const glm::mat4& matrix) {
 /// \param owner  begins the message: "camera: "
 void check_field_of_view(const std::string& owner, float vertical_fov);
 
+/// Returns the width and the height of an image, from its header. \throws FileError if it cannot be
+/// read
+glm::ivec2 image_size(const ImageSource& source);
+
 /// Returns what the metadata of an image state. Nothing if it cannot be read, which the decoder
 /// reports.
 MapDescription stated_description(const ImageSource& source);

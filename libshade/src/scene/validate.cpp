@@ -77,6 +77,11 @@ class FieldChecker {
     }
 
     template <typename Field>
+    void check_value(const Field& field, int value) const {
+        check_value(field, static_cast<float>(value));
+    }
+
+    template <typename Field>
     void check_value(const Field& field, const glm::vec3& value) const {
         if (field.unit == FieldUnit::color) {
             for (int i = 0; i < 3; ++i) {

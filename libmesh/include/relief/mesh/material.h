@@ -21,6 +21,7 @@
 #include "relief/export.h"
 #include "relief/mesh/enum_names.h"
 #include "relief/mesh/fields.h"
+#include "relief/mesh/height_march.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
@@ -95,6 +96,22 @@ struct NormalMap {
 struct BumpMap {
     Texture texture;         ///< Red is the height.
     float strength = 16.0F;  ///< The height in texels of the value 1.0.
+};
+
+/// Heights that show a surface's textures displaced along the view: relief mapping. Normals come
+/// from the normal or bump map, which may be the same image. The relief lies below the surface of
+/// white and in the tangent plane of the interpolated normal.
+struct ReliefMap {
+    Texture texture;      ///< Red is the height; white is at the surface.
+    float depth = 16.0F;  ///< Of black below white, in texels: the square root of a texel's area.
+    // The members of HeightMarch (height_march.h).
+    HeightMethod method = HeightMarch{}.method;
+    int layers = HeightMarch{}.layers;
+    int bisections = HeightMarch{}.bisections;
+    int max_steps = HeightMarch{}.max_steps;
+    /// Relaxed cones of the same size, which that method needs: green is the ratio of radius to
+    /// depth, both as fractions of the map and of the depth, as its square root.
+    std::optional<Texture> cones = std::nullopt;
 };
 
 /// glTF's metallic-roughness model. In a Material it replaces Phong's ambient, diffuse, specular,
@@ -185,7 +202,8 @@ struct Material {
     float occlusion_strength = 1.0F;           ///< Within [0,1].
     std::optional<Texture> opacity_texture;    ///< Red.
     std::optional<NormalMap> normal_map;
-    std::optional<BumpMap> bump_map;                    ///< Not together with a normal map.
+    std::optional<BumpMap> bump_map;  ///< Not together with a normal map.
+    std::optional<ReliefMap> height_map;
     TangentFrame tangent_frame = TangentFrame::stored;  ///< Of maps and of anisotropy.
     /// Widens highlights by the variance of a minified normal map's normals within a pixel
     /// [Toksvig 2005].
@@ -254,6 +272,17 @@ inline constexpr auto fields_of<BumpMap> = std::tuple{
     SceneField{
         "strength", &BumpMap::strength, {-1e6F, 1e6F}, FieldUnit::texels, "bump map strength"}
         .on_slider({0, 128})};
+
+template <>
+inline constexpr auto fields_of<ReliefMap> = std::tuple{
+    SceneField{"texture", &ReliefMap::texture, {}, {}, "height map"},
+    SceneField{"depth", &ReliefMap::depth, {0, 1e6F}, FieldUnit::texels, "relief depth"}.on_slider(
+        {0, 64}),
+    SceneField{"method", &ReliefMap::method, {}, {}, "relief method"},
+    SceneField{"layers", &ReliefMap::layers, {1, 512}, {}, "relief layers"}.on_slider({1, 128}),
+    SceneField{"bisections", &ReliefMap::bisections, {0, 16}, {}, "relief bisections"},
+    SceneField{"max_steps", &ReliefMap::max_steps, {1, 1024}, {}, "maximum relief steps"},
+    SceneField{"cones", &ReliefMap::cones, {}, {}, "cone map"}};
 
 /// Returns the description of a factor of glTF's model.
 /// \param gltf  its path in a material of glTF
@@ -393,6 +422,7 @@ inline constexpr auto fields_of<Material> = std::tuple{
     SceneField{"opacity_texture", &Material::opacity_texture},
     SceneField{"normal_map", &Material::normal_map},
     SceneField{"bump_map", &Material::bump_map},
+    SceneField{"height_map", &Material::height_map},
     SceneField{"tangent_frame", &Material::tangent_frame},
     SceneField{"specular_antialiasing", &Material::specular_antialiasing},
     SceneField{"alpha_mode", &Material::alpha_mode},
@@ -414,6 +444,8 @@ enum class TextureSlot : std::uint8_t {
     metallic_roughness,
     normal,
     bump,
+    height,
+    cones,
     occlusion,
     emission,
     opacity,
@@ -443,7 +475,8 @@ enum class NeutralTexel : std::uint8_t {
 using TextureMember =
     std::variant<std::optional<Texture> Material::*, std::optional<Texture> MetallicRoughness::*,
                  std::optional<NormalMap> Material::*,
-                 std::optional<NormalMap> MetallicRoughness::*, std::optional<BumpMap> Material::*>;
+                 std::optional<NormalMap> MetallicRoughness::*, std::optional<BumpMap> Material::*,
+                 std::optional<ReliefMap> Material::*, std::optional<Texture> ReliefMap::*>;
 
 struct TextureSlotInfo {
     TextureSlot slot;
@@ -471,6 +504,10 @@ inline constexpr std::array<TextureSlotInfo, texture_slot_count> texture_slots{{
     {TextureSlot::normal, "normal", "normal_texture", "normal map", &Material::normal_map,
      "normalTexture", "rgb", ImageUse::data, NeutralTexel::flat, true},
     {TextureSlot::bump, "bump", "bump_texture", "bump map", &Material::bump_map, "", "r",
+     ImageUse::data, NeutralTexel::white, true},
+    {TextureSlot::height, "height", "height_texture", "maximum mipmaps", &Material::height_map, "",
+     "r", ImageUse::data, NeutralTexel::white, true},
+    {TextureSlot::cones, "cone", "cone_texture", "relaxed cones", &ReliefMap::cones, "", "rg",
      ImageUse::data, NeutralTexel::white, true},
     {TextureSlot::occlusion, "occlusion", "occlusion_texture", "occlusion texture",
      &Material::occlusion_texture, "occlusionTexture", "r", ImageUse::data},
@@ -540,7 +577,7 @@ const Texture* find_texture(const Material& material, TextureSlot slot);
 Texture* find_texture(Material& material, TextureSlot slot);
 
 /// Sets the texture in a slot. A map that the material has keeps its other fields. Textures of
-/// glTF's model are ignored if the material does not have it.
+/// glTF's model are ignored if the material does not have it, and cones without a height map.
 void set_texture(Material& material, TextureSlot slot, const Texture& texture);
 
 /// Removes the texture from a slot, with its map.

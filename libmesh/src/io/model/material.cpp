@@ -17,13 +17,16 @@ auto& texture_of_member(Value& value) {
     }
 }
 
-/// Calls visit(optional) with the member of a slot, unless the material lacks glTF's model.
+/// Calls visit(optional) with the member of a slot, unless the material lacks glTF's model, or the
+/// height map that has the member.
 template <typename AnyMaterial, typename Visit>
 void visit_member(AnyMaterial& material, TextureSlot slot, const Visit& visit) {
     std::visit(
         [&]<typename Value, typename Owner>(Value Owner::*member) {
             if constexpr (std::is_same_v<Owner, Material>) {
                 visit(material.*member);
+            } else if constexpr (std::is_same_v<Owner, ReliefMap>) {
+                if (material.height_map) visit((*material.height_map).*member);
             } else if (material.metallic_roughness) {
                 visit((*material.metallic_roughness).*member);
             }

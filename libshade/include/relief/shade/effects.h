@@ -28,6 +28,16 @@ namespace shade {
 /// The map that perturbs the normal.
 enum class NormalDetail : std::uint8_t { none, normal_map, object_normal_map, bump_map };
 
+/// The method by which heights displace what a surface shows along the view: HeightMethod, or none.
+enum class DepthMapping : std::uint8_t {
+    none,
+    parallax,
+    parallax_occlusion,
+    relief_mapping,
+    relaxed_cones,
+    maximum_mipmaps,
+};
+
 enum class SpecularTerm : std::uint8_t { none, phong, blinn_phong };
 
 /// The reflection of the environment.
@@ -99,6 +109,10 @@ struct Features {
     TangentFrame frame = TangentFrame::stored;  ///< For tangent-space maps and anisotropy.
     bool specular_antialiasing = false;
     bool double_sided = false;  ///< Back faces have the opposite normal.
+    // The displacement of texture coordinates along the view.
+    DepthMapping depth_mapping = DepthMapping::none;
+    Wrap height_wrap_u = Wrap::repeat;  ///< Of the height map, for maximum mipmaps.
+    Wrap height_wrap_v = Wrap::repeat;
     // Light.
     bool ambient = false;
     std::uint32_t directional_lights = 0;

@@ -174,6 +174,10 @@ struct FrameSettings {
     /// `samples`.
     DebugView view = DebugView::picture;
     Overlays overlays = {};
+    /// The camera of the picture, if it is known: depth mapping is planned only where it can move
+    /// what this camera sees by half a pixel. If it is absent, depth mapping is planned for any
+    /// camera.
+    std::optional<Camera> camera = std::nullopt;
     /// Texts that replace parts of the shaders; none if it is null. Other texts are another object.
     std::shared_ptr<const ShaderTexts> shaders = nullptr;
 
