@@ -194,8 +194,9 @@ float hit_depth(vec2 p, vec2 k) {
         float above = -below_relief(p, k, around.y);
         if (above <= 0.0) break;
         float cone = cone_at(p + k * around.y);
-        float next = min(around.y + cone * above / (slant + cone), height_depth);
-        around = vec2(around.y, next);
+        // A cone of no width stops the ray.
+        float step = cone > 0.0 ? cone * above / (slant + cone) : 0.0;
+        around = vec2(around.y, min(around.y + step, height_depth));
     }
     return bisected(p, k, around);
 }
@@ -218,6 +219,23 @@ float exit_depth(float from, float rate, float first, float last) {
     return ((rate > 0.0 ? last : first) - from) / rate;
 }
 
+vec2 exit_depths(vec2 from, vec2 k, HeightSpan x, HeightSpan y) {
+    return vec2(exit_depth(from.x, k.x, float(x.first), float(x.last)),
+                exit_depth(from.y, k.y, float(y.first), float(y.last)));
+}
+
+ivec2 cell_at(vec2 point, HeightSpan x, HeightSpan y) {
+    return clamp(ivec2(floor(point)), ivec2(x.first, y.first), ivec2(x.last, y.last) - 1);
+}
+
+// Returns the cell after a node or a patch that the ray leaves at this point.
+ivec2 next_cell(vec2 point, vec2 k, HeightSpan x, HeightSpan y, vec2 leaves) {
+    ivec2 next = cell_at(point, x, y);
+    if (leaves.x <= leaves.y) next.x = k.x > 0.0 ? x.last : x.first - 1;
+    if (leaves.y <= leaves.x) next.y = k.y > 0.0 ? y.last : y.first - 1;
+    return next;
+}
+
 float texel_height(ivec2 texel) { return texelFetch(height_texture, texel, 0).r; }
 
 // Returns the depth, from `begin` on, at which the ray passes the patch's surface; no_exit if it does
@@ -229,7 +247,7 @@ float patch_depth(vec2 from, vec2 k, ivec2 cell, float begin) {
     float b = texel_height(ivec2(far.x, near.y)) - a;
     float c = texel_height(ivec2(near.x, far.y)) - a;
     float e = texel_height(far) - a - b - c;
-    vec2 at = from + k * begin - vec2(cell);
+    vec2 at = clamp(from + k * begin - vec2(cell), 0.0, 1.0);
     float height = a + b * at.x + c * at.y + e * at.x * at.y;
     vec3 q = vec3(begin - height_depth * (1.0 - height),
                   1.0 + height_depth * (b * k.x + c * k.y + e * (at.x * k.y + at.y * k.x)),
@@ -241,44 +259,46 @@ float patch_depth(vec2 from, vec2 k, ivec2 cell, float begin) {
 }
 
 float hit_depth(vec2 p, vec2 k) {
-    ivec2 size = textureSize(height_texture, 0);
     vec2 from = p - 0.5;
     ivec2 cell = ivec2(floor(from));
+    ivec2 size = textureSize(height_texture, 0);
+    int last_level = int(floor(log2(float(max(size.x, size.y)))));
     // The nodes of the first level are as large as the ray is long.
     float reach = height_depth * max(abs(k.x), abs(k.y)) + 1.0;
-    int last_level = int(floor(log2(float(max(size.x, size.y)))));
     int level = min(int(ceil(log2(reach))), last_level);
     float s = 0.0;
-    bool ascends = false;
-    for (float i = 0.0; i < height_steps; i += 1.0) {
-        HeightSpan x = level > 0 ? height_columns(cell.x, level) : patch_span(cell.x);
-        HeightSpan y = level > 0 ? height_rows(cell.y, level) : patch_span(cell.y);
-        vec2 leaves = vec2(exit_depth(from.x, k.x, float(x.first), float(x.last)),
-                           exit_depth(from.y, k.y, float(y.first), float(y.last)));
-        float end = min(min(leaves.x, leaves.y), height_depth);
-        if (level > 0) {
+    int left = 0;  // Nodes and patches that the ray has left; every second time it ascends.
+    float steps = 0.0;
+    while (steps < height_steps) {
+        while (level > 0 && steps < height_steps) {
+            steps += 1.0;
+            HeightSpan x = height_columns(cell.x, level);
+            HeightSpan y = height_rows(cell.y, level);
+            vec2 leaves = exit_depths(from, k, x, y);
+            float end = min(min(leaves.x, leaves.y), height_depth);
             float highest = texelFetch(height_texture, ivec2(x.node, y.node), level).r;
             float top = height_depth * (1.0 - highest);
-            if (end >= top) {
-                s = max(s, min(top, end));
-                ivec2 within = ivec2(floor(from + k * s));
-                cell = clamp(within, ivec2(x.first, y.first), ivec2(x.last, y.last) - 1);
-                level -= 1;
-                continue;
-            }
-        } else {
-            float hit = patch_depth(from, k, cell, s);
-            if (hit <= end) return hit;
+            bool passes = end < top;
+            if (passes && end >= height_depth) return height_depth;
+            s = max(s, min(top, end));
+            vec2 point = from + k * s;
+            cell = passes ? next_cell(point, k, x, y, leaves) : cell_at(point, x, y);
+            left += passes ? 1 : 0;
+            level = passes ? min(level + 1 - (left & 1), last_level) : level - 1;
         }
+        if (steps >= height_steps) break;
+        steps += 1.0;
+        HeightSpan x = patch_span(cell.x);
+        HeightSpan y = patch_span(cell.y);
+        vec2 leaves = exit_depths(from, k, x, y);
+        float end = min(min(leaves.x, leaves.y), height_depth);
+        float hit = patch_depth(from, k, cell, s);
+        if (hit <= end) return hit;
         if (end >= height_depth) return height_depth;
         s = max(s, end);
-        ivec2 next = clamp(ivec2(floor(from + k * s)), ivec2(x.first, y.first),
-                           ivec2(x.last, y.last) - 1);
-        if (leaves.x <= leaves.y) next.x = k.x > 0.0 ? x.last : x.first - 1;
-        if (leaves.y <= leaves.x) next.y = k.y > 0.0 ? y.last : y.first - 1;
-        cell = next;
-        if (ascends) level = min(level + 1, last_level);
-        ascends = !ascends;
+        cell = next_cell(from + k * s, k, x, y, leaves);
+        left += 1;
+        level = min(1 - (left & 1), last_level);
     }
     return s;
 }
@@ -358,6 +378,8 @@ HeightSpan mirrored_span(int cell, int size, int level) {
 }
 
 //@part columns_repeated implements height_columns
+// Columns of a map that repeats.
+
 //@include "height_march.glsl#repeated"
 
 int height_column(int x) { return repeated_texel(x, textureSize(height_texture, 0).x); }
@@ -367,6 +389,8 @@ HeightSpan height_columns(int cell, int level) {
 }
 
 //@part columns_clamped implements height_columns
+// Columns of a map that continues its border.
+
 //@include "height_march.glsl#clamped"
 
 int height_column(int x) { return clamped_texel(x, textureSize(height_texture, 0).x); }
@@ -376,6 +400,8 @@ HeightSpan height_columns(int cell, int level) {
 }
 
 //@part columns_mirrored implements height_columns
+// Columns of a map that repeats mirrored.
+
 //@include "height_march.glsl#mirrored"
 
 int height_column(int x) { return mirrored_texel(x, textureSize(height_texture, 0).x); }
@@ -385,6 +411,8 @@ HeightSpan height_columns(int cell, int level) {
 }
 
 //@part rows_repeated implements height_rows
+// Rows of a map that repeats.
+
 //@include "height_march.glsl#repeated"
 
 int height_row(int y) { return repeated_texel(y, textureSize(height_texture, 0).y); }
@@ -394,6 +422,8 @@ HeightSpan height_rows(int cell, int level) {
 }
 
 //@part rows_clamped implements height_rows
+// Rows of a map that continues its border.
+
 //@include "height_march.glsl#clamped"
 
 int height_row(int y) { return clamped_texel(y, textureSize(height_texture, 0).y); }
@@ -403,6 +433,8 @@ HeightSpan height_rows(int cell, int level) {
 }
 
 //@part rows_mirrored implements height_rows
+// Rows of a map that repeats mirrored.
+
 //@include "height_march.glsl#mirrored"
 
 int height_row(int y) { return mirrored_texel(y, textureSize(height_texture, 0).y); }

@@ -76,7 +76,11 @@ AddedOption add_field(CLI::App& app, FieldChanges<Owner>& changes, const std::st
     return add_value(
         app, option, value_name, description,
         [&changes, member, range](const std::string& subject, const std::string& text) {
-            changes.set(member, Value(static_cast<float>(parse_number(subject, text, range))));
+            if constexpr (std::is_same_v<Value, int>)
+                changes.set(member, parse_integer(subject, text, static_cast<int>(range.min),
+                                                  static_cast<int>(range.max)));
+            else
+                changes.set(member, Value(static_cast<float>(parse_number(subject, text, range))));
         });
 }
 

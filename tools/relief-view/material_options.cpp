@@ -61,7 +61,8 @@ void add_normal_options(CLI::App& app, ViewOptions& options) {
 
 void add_height_options(CLI::App& app, ViewOptions& options) {
     add_path(app, "--height-map", options.height_map,
-             "Read a height map from FILE. It is converted to a normal map or drawn as a bump map.")
+             "Read a height map from FILE. It is converted to a normal map or drawn as a bump map, "
+             "and displaces textures with --height-depth or --height-method.")
         .group(maps_group);
     add_choice(app, "--height-as", options.height_as,
                Choices<HeightUse>{{"normal_map", HeightUse::normal_map},
@@ -78,6 +79,32 @@ void add_height_options(CLI::App& app, ViewOptions& options) {
         .group(maps_group);
 }
 
+void add_relief_options(CLI::App& app, ViewOptions& options) {
+    FieldChanges<ReliefMap>& fields = options.relief_fields;
+    add_field(app, fields, "--height-depth", "D", &ReliefMap::depth,
+              "Look up all textures where the view meets the relief of --height-map, or of the "
+              "scene's height maps. Black lies D texels below the surface of white. Default: the "
+              "strength of the map.")
+        .group(maps_group);
+    add_field(app, fields, "--height-method", &ReliefMap::method,
+              "Choose the method by which the view meets the relief: see docs/relief-mapping.md. "
+              "Default: maximum_mipmaps.")
+        .group(maps_group);
+    add_field(app, fields, "--height-layers", "N", &ReliefMap::layers,
+              "Set the layers of parallax occlusion and relief mapping, or the steps of relaxed "
+              "cones, from 1 to 512. Default: 16.")
+        .group(maps_group);
+    add_field(app, fields, "--height-bisections", "N", &ReliefMap::bisections,
+              "Set the bisections of relief mapping and relaxed cones, from 0 to 16. Default: 6.")
+        .group(maps_group);
+    add_field(app, fields, "--height-steps", "N", &ReliefMap::max_steps,
+              "Set the steps after which maximum mipmaps end, from 1 to 1024. Default: 128.")
+        .group(maps_group);
+    add_path(app, "--cone-map", options.cone_map,
+             "Read the cone map of the height map from FILE, which relaxed cones need.")
+        .group(maps_group);
+}
+
 }  // namespace
 
 void add_map_options(CLI::App& app, ViewOptions& options) {
@@ -86,6 +113,7 @@ void add_map_options(CLI::App& app, ViewOptions& options) {
         .group(maps_group);
     add_normal_options(app, options);
     add_height_options(app, options);
+    add_relief_options(app, options);
 }
 
 namespace {
@@ -186,8 +214,8 @@ constexpr glm::vec3 default_specular{0.25F};
 
 bool has_overrides(const ViewOptions& o) {
     return o.diffuse_map || o.normal_map || o.height_map || o.normal_scale || o.material ||
-           o.metallic_roughness || o.no_fresnel || !o.material_fields.empty() ||
-           o.scene_fields.has(&Scene::clamp_terms);
+           !o.relief_fields.empty() || o.cone_map || o.metallic_roughness || o.no_fresnel ||
+           !o.material_fields.empty() || o.scene_fields.has(&Scene::clamp_terms);
 }
 
 /// Returns whether an option sets highlights, for which materials need a specular color.
@@ -267,6 +295,39 @@ void set_bump_map(Scene& scene, const ViewOptions& options) {
     for (Material& material : scene.materials) {
         material.bump_map = map;
         material.normal_map.reset();
+    }
+}
+
+/// Displaces the textures of all materials by the height map of the options, or changes the height
+/// maps that materials have.
+void set_relief(Scene& scene, const ViewOptions& options) {
+    if (options.relief_fields.empty() && !options.cone_map) return;
+    if (options.height_map) {
+        ReliefMap map;
+        map.texture = add_texture(scene, {options.height_map->string(), *options.height_map});
+        map.depth =
+            static_cast<float>(std::max(0.0, options.strength.value_or(BumpOptions{}.strength)));
+        for (Material& material : scene.materials)
+            material.height_map = map;
+    }
+    std::optional<Texture> cones;
+    if (options.cone_map)
+        cones = add_texture(scene, {options.cone_map->string(), *options.cone_map});
+    bool any = false;
+    for (Material& material : scene.materials) {
+        if (!material.height_map) continue;
+        any = true;
+        options.relief_fields.apply(*material.height_map);
+        if (cones) material.height_map->cones = cones;
+        if (material.height_map->method == HeightMethod::relaxed_cones &&
+            !material.height_map->cones)
+            throw UsageError("--height-method relaxed_cones: there is no cone map",
+                             "give one with --cone-map");
+    }
+    if (!any) {
+        throw UsageError(
+            "--height-depth, --height-method: the scene has no height map to displace by",
+            "give one with --height-map");
     }
 }
 
@@ -427,6 +488,7 @@ void override_materials(Scene& scene, const ViewOptions& options, Stages& stages
             set_normal_map(scene, normal_map_of_heights(scene, options, stages, report));
         }
     }
+    set_relief(scene, options);
     if (options.normal_scale) set_normal_scale(scene, *options.normal_scale);
     if (sets_highlights(options)) add_specular_colors(scene, notes);
     for (Material& material : scene.materials) {

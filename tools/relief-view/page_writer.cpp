@@ -80,6 +80,7 @@ Json json_of(const PageTexture& t) {
             {"t", enum_name(t.texels)},
             {"srgb", t.is_srgb},
             {"levels", t.has_levels},
+            {"maxima", t.has_maxima},
             {"gray", t.is_gray},
             {"c", t.channels},
             {"w", t.width},

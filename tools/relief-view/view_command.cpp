@@ -186,6 +186,13 @@ FrameSettings settings_of(const ViewOptions& options, const HealthMarkers& marke
             .shaders = options.exercise ? attempt_at(*options.exercise).texts : nullptr};
 }
 
+/// Returns the camera of all pictures; none if they have several, or readers of a page move it.
+std::optional<Camera> only_camera(const ViewOptions& options, const ComposedScene& composed) {
+    if (is_page(options) || options.turntable || options.frames) return std::nullopt;
+    const bool follows = composed.camera_follows_scene && composed.scene().camera;
+    return follows ? *composed.scene().camera : composed.camera;
+}
+
 /// Keeps alpha only if it was requested, because viewers show different colors behind it.
 Image picture_of(const Frame& frame, const Scene& scene) {
     Image picture = frame.image;
@@ -291,7 +298,8 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
     if (options.debug.health_markers)
         markers =
             stages.run("check", [&] { return chosen_markers(options.debug, composed.scene()); });
-    const FrameSettings settings = settings_of(options, markers, composed.scene());
+    FrameSettings settings = settings_of(options, markers, composed.scene());
+    settings.camera = only_camera(options, composed);
     FramePlan plan = viewed_plan(options, composed.scene(), settings,
                                  chosen_plan(options, composed.scene(), settings), report);
     save_files(options, composed, stages);

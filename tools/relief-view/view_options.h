@@ -138,6 +138,8 @@ struct ViewOptions {
     std::optional<HeightUse> height_as;
     std::optional<double> strength;
     std::optional<Kernel> kernel;
+    FieldChanges<ReliefMap> relief_fields;  ///< Of all height maps that displace; add them, too.
+    std::optional<std::filesystem::path> cone_map;
     std::optional<std::filesystem::path> diffuse_map;
 
     std::optional<NormalMode> normals;

@@ -70,6 +70,7 @@ std::vector<MapKind> kinds_in(const ImageRole& role) {
         case TextureSlot::metallic_roughness:
             return {MapKind::packed, MapKind::roughness, MapKind::metalness, MapKind::occlusion};
         case TextureSlot::bump:
+        case TextureSlot::height:
             return {MapKind::height};
         default:
             return {};

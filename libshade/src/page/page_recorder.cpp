@@ -156,7 +156,10 @@ void PageRecorder::Implementation::add_lookups(const gl::LinkedProgram& program,
         GLint unit = 0;
         gl->GetUniformiv(program.name(), sampler.location, &unit);
         if (sampler.type != GL_SAMPLER_BUFFER) {
-            surface.textures.emplace(sampler.name, content.lookup(unit, sampler.type));
+            const PageLookup lookup = content.lookup(unit, sampler.type);
+            if (sampler.name == "height_texture")
+                content.description.textures[lookup.texture].has_maxima = true;
+            surface.textures.emplace(sampler.name, lookup);
         } else if (sampler.name != "light_buffer") {
             const std::size_t texture = content.rows(unit, sampler.name == "hidden_shares" ? 1 : 4);
             if (content.description.textures[texture].width > max_row_texels) {

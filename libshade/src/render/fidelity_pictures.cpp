@@ -61,6 +61,7 @@ Material matte(const Material& material, FidelityMaterials materials) {
     result.interpolation = material.interpolation;
     result.normal_map = material.normal_map;
     result.bump_map = material.bump_map;
+    result.height_map = material.height_map;
     result.tangent_frame = material.tangent_frame;
     result.opacity_texture = material.opacity_texture;
     result.alpha_mode = material.alpha_mode;

@@ -34,15 +34,18 @@ const char* const unreadable_reason = "its image cannot be read";
 const std::vector<const Effect*>& effects_of(TextureSlot slot) {
     static const auto all = [] {
         std::array<std::vector<const Effect*>, texture_slot_count> effects;
-        for (std::size_t i = 0; i < texture_slot_count; ++i)
-            effects[i].push_back(&find_effect(texture_slots[i].effect)->effect);
+        for (std::size_t i = 0; i < texture_slot_count; ++i) {
+            if (const EffectRow* const row = find_effect(texture_slots[i].effect))
+                effects[i].push_back(&row->effect);
+        }
         const auto add = [&](TextureSlot sampled, const char* effect) {
             effects[static_cast<std::size_t>(sampled)].push_back(&find_effect(effect)->effect);
         };
         add(TextureSlot::normal, "object-space normal map");
-        for (const char* const effect :
-             {"parallax mapping", "parallax occlusion mapping", "relief mapping", "relaxed cones"})
+        for (const char* const effect : {"parallax mapping", "parallax occlusion mapping",
+                                         "relief mapping", "relaxed cones", "maximum mipmaps"})
             add(TextureSlot::height, effect);
+        add(TextureSlot::cones, "relaxed cones");
         return effects;
     }();
     return all[static_cast<std::size_t>(slot)];

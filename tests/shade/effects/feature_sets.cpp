@@ -146,6 +146,9 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::frame, 2>("frame"),
         field<&F::specular_antialiasing>("specular antialiasing"),
         field<&F::double_sided>("double-sided"),
+        field<&F::depth_mapping, 6>("depth mapping"),
+        field<&F::height_wrap_u, 3>("wrap of heights along u"),
+        field<&F::height_wrap_v, 3>("wrap of heights along v"),
         field<&F::ambient>("ambient"),
         field<&F::directional_lights, 3>("directional lights"),
         field<&F::point_lights, 3>("point lights"),
@@ -260,6 +263,16 @@ void add_textures(Scene& scene, Material& m, const Features& f) {
         if (f.detail == NormalDetail::object_normal_map) m.normal_map->space = NormalSpace::object;
     }
     if (f.detail == NormalDetail::bump_map) m.bump_map = BumpMap{data("bump", 8, 0), 2.0F};
+    if (f.depth_mapping != DepthMapping::none) {
+        ReliefMap map;
+        map.texture = data("relief", 21, 0);
+        map.texture.wrap_u = f.height_wrap_u;
+        map.texture.wrap_v = f.height_wrap_v;
+        map.depth = 0.2F;
+        map.method = static_cast<HeightMethod>(static_cast<int>(f.depth_mapping) - 1);
+        if (f.depth_mapping == DepthMapping::relaxed_cones) map.cones = data("cones", 22, 0);
+        m.height_map = map;
+    }
     if (m.diffuse_texture)
         m.diffuse_texture->second_texcoords =
             (f.second_texcoords & second_bit(TextureSlot::base_color)) != 0;

@@ -142,6 +142,20 @@ inline const Change object_map = [](Frame& f) {
 };
 inline const Change bump_map = with(&Material::bump_map, BumpMap{});
 
+/// A relief by this method.
+inline Change relief(HeightMethod method) {
+    return [method](Frame& f) {
+        ReliefMap map;
+        map.method = method;
+        map.cones = Texture{};
+        f.material().height_map = map;
+    };
+}
+inline const Change maximum_mipmaps = relief(HeightMethod::maximum_mipmaps);
+inline const Change relaxed_cones = relief(HeightMethod::relaxed_cones);
+inline const Change no_cones = [](Frame& f) { f.material().height_map->cones.reset(); };
+inline const Change no_depth = [](Frame& f) { f.material().height_map->depth = 0.0F; };
+
 inline const Change second_texcoords = [](Frame& f) { f.mesh().texcoords_2.resize(4); };
 inline const Change no_texcoords = [](Frame& f) { f.mesh().texcoords.clear(); };
 inline const Change stored_tangents = [](Frame& f) { f.mesh().tangents.assign(4, {1, 0, 0, 1}); };

@@ -83,6 +83,32 @@ function taps(size, i) {
   return [[2 * i, (m - i) / size], [2 * i + 1, m / size], [2 * i + 2, (i + 1) / size]];
 }
 
+// The levels of a relief's heights, by the rule of libshade/src/render/height_levels.cpp: the maxima of
+// patches, each between four texels.
+function* levelsOfMaxima({width, height, samples}) {
+  let last = new samples.constructor(samples.length);
+  for (let y = 0; y < height; ++y)
+    for (let x = 0; x < width; ++x)
+      for (let k = 0; k < 4; ++k) {
+        const at = (column, row) => samples[4 * ((row % height) * width + column % width) + k];
+        last[4 * (y * width + x) + k] = Math.max(at(x, y), at(x + 1, y), at(x, y + 1), at(x + 1, y + 1));
+      }
+  while (width > 1 || height > 1) {
+    const w = Math.max(width >> 1, 1), h = Math.max(height >> 1, 1);
+    const next = new samples.constructor(4 * w * h);
+    for (let y = 0; y < h; ++y)
+      for (let x = 0; x < w; ++x)
+        for (let row = 2 * y; row < (y + 1 === h ? height : 2 * y + 2); ++row)
+          for (let column = 2 * x; column < (x + 1 === w ? width : 2 * x + 2); ++column)
+            for (let k = 0; k < 4; ++k) {
+              const to = 4 * (y * w + x) + k;
+              next[to] = Math.max(next[to], last[4 * (row * width + column) + k]);
+            }
+    [width, height, last] = [w, h, next];
+    yield {width, height, samples: last};
+  }
+}
+
 function* smallerLevels(image, isSrgb) {
   let {width, height, samples} = image;
   const isByte = samples instanceof Uint8Array;

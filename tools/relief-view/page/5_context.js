@@ -70,7 +70,10 @@ class Gpu {
       gl.texImage2D(target, level++, format, width, height, 0, gl.RGBA, isByte ? gl.UNSIGNED_BYTE : gl.FLOAT, samples);
     };
     upload(image);
-    if (texture.levels || level === 0) for (const smaller of smallerLevels(image, texture.srgb)) upload(smaller);
+    if (texture.levels || level === 0) {
+      const smallerOnes = texture.maxima ? levelsOfMaxima(image) : smallerLevels(image, texture.srgb);
+      for (const smaller of smallerOnes) upload(smaller);
+    }
     gl.texParameteri(target, gl.TEXTURE_MAX_LEVEL, level - 1);
     return {name, target};
   }

@@ -5,6 +5,8 @@
 /// Tests: tests/tools/window/user_interface_test.cpp.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <glm/vec2.hpp>
@@ -129,6 +131,13 @@ bool edit_field(Owner& owner, const SceneField<Owner, Value>& field) {
     if constexpr (std::is_same_v<Value, float>) {
         return edit_number(title.c_str(), value, field.slider_range, field.unit,
                            field.default_value());
+    } else if constexpr (std::is_same_v<Value, int>) {
+        auto number = static_cast<float>(value);
+        if (!edit_number(title.c_str(), number, field.slider_range, field.unit,
+                         static_cast<float>(field.default_value())))
+            return false;
+        value = static_cast<int>(std::lround(std::clamp(number, field.range.min, field.range.max)));
+        return true;
     } else if constexpr (std::is_same_v<Value, std::optional<float>>) {
         return edit_optional(title.c_str(), value);
     } else if constexpr (std::is_same_v<Value, glm::vec3>) {

@@ -107,8 +107,10 @@ std::vector<MaterialGroup> material_groups(const Material& material) {
                     material.environment_tint,
                 {});
         }
-        add(Topic::relief, "Relief", material.normal_map || material.bump_map,
-            {Slot::normal, Slot::bump});
+        std::vector<Slot> maps{Slot::normal, Slot::bump, Slot::height};
+        if (material.height_map) maps.push_back(Slot::cones);
+        add(Topic::relief, "Relief",
+            material.normal_map || material.bump_map || material.height_map, std::move(maps));
         add(Topic::occlusion, "Occlusion", material.occlusion_texture.has_value(),
             {Slot::occlusion});
         add(Topic::emission, "Emission", material.emission != black, {Slot::emission});

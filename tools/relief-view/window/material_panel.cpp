@@ -172,6 +172,11 @@ bool edit_relief(Material& material) {
     if (material.bump_map) {
         changed |= edit_field(*material.bump_map, &BumpMap::strength);
     }
+    if (material.height_map) {
+        ReliefMap& map = *material.height_map;
+        changed |= choose("Relief method", map.method);
+        for_each_field<ReliefMap>([&](const auto& field) { changed |= edit_field(map, field); });
+    }
     const auto& model = material.metallic_roughness;
     const bool model_has_frame = model && (model->anisotropy > 0.0F || model->clearcoat_normal_map);
     if (material.normal_map || material.bump_map || model_has_frame)

@@ -109,8 +109,8 @@ struct ReliefMap {
     int layers = HeightMarch{}.layers;
     int bisections = HeightMarch{}.bisections;
     int max_steps = HeightMarch{}.max_steps;
-    /// Relaxed cones of the same size, which that method needs: green is the ratio of radius to
-    /// depth, both as fractions of the map and of the depth, as its square root.
+    /// The cone map, which relaxed cones need; of the same size. Green is the root of the ratio of
+    /// a cone's radius to its height, as fractions of the map's larger side and of the depth.
     std::optional<Texture> cones = std::nullopt;
 };
 
@@ -482,7 +482,7 @@ struct TextureSlotInfo {
     TextureSlot slot;
     const char* name;     ///< In reports: "base color".
     const char* sampler;  ///< In shaders: "diffuse_texture".
-    const char* effect;   ///< The effect that samples it.
+    const char* effect;   ///< The effect that samples it; the map, if effects share it.
     TextureMember member;
     const char* gltf;      ///< The path in a material of glTF; empty if glTF has no such texture.
     const char* channels;  ///< Those that are used: "rgb", "g".
@@ -505,9 +505,9 @@ inline constexpr std::array<TextureSlotInfo, texture_slot_count> texture_slots{{
      "normalTexture", "rgb", ImageUse::data, NeutralTexel::flat, true},
     {TextureSlot::bump, "bump", "bump_texture", "bump map", &Material::bump_map, "", "r",
      ImageUse::data, NeutralTexel::white, true},
-    {TextureSlot::height, "height", "height_texture", "maximum mipmaps", &Material::height_map, "",
-     "r", ImageUse::data, NeutralTexel::white, true},
-    {TextureSlot::cones, "cone", "cone_texture", "relaxed cones", &ReliefMap::cones, "", "rg",
+    {TextureSlot::height, "height", "height_texture", "height map", &Material::height_map, "", "r",
+     ImageUse::data, NeutralTexel::white, true},
+    {TextureSlot::cones, "cone", "cone_texture", "cone map", &ReliefMap::cones, "", "rg",
      ImageUse::data, NeutralTexel::white, true},
     {TextureSlot::occlusion, "occlusion", "occlusion_texture", "occlusion texture",
      &Material::occlusion_texture, "occlusionTexture", "r", ImageUse::data},

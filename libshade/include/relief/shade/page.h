@@ -50,6 +50,7 @@ struct PageTexture {
     PageTexels texels = PageTexels::bits_8;
     bool is_srgb = false;     ///< The samples are sRGB codes, which lookups decode.
     bool has_levels = false;  ///< Minification uses smaller levels.
+    bool has_maxima = false;  ///< The levels are maxima of heights (shaders/height_march.glsl).
     bool is_gray = false;     ///< One or two channels are gray, and gray with alpha.
     int channels = 4;
     int width = 0;  ///< Of `rows`, the number of texels.

@@ -87,6 +87,7 @@ enum class ProbeRole : std::uint8_t {
     coverage,  ///< It changes ProbeLayer::alpha.
     picture,   ///< It changes a value of ProbePicture.
     position,  ///< It moves vertices.
+    texcoord,  ///< It moves ProbeLayer::texcoord.
     storage,   ///< It changes no value: how numbers are stored or passed.
     absent,    ///< The reference does without it; the difference to the renderer shows it.
 };
