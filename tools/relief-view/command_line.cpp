@@ -16,6 +16,7 @@
 #include "exercise.h"
 #include "light_options.h"
 #include "material_options.h"
+#include "mistake_pictures.h"
 #include "option_conflicts.h"
 #include "page_command.h"
 #include "picture_comparison.h"
@@ -149,6 +150,7 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
     add_compare_options(app, options);
     add_effect_options(app, options);
     add_step_options(app, options);
+    add_mistake_options(app, options);
     add_exercise_options(app, options);
     add_debug_options(app, options);
     add_probe_options(app, options);

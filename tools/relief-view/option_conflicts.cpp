@@ -10,6 +10,7 @@
 #include "common/text.h"
 #include "environment_options.h"
 #include "page_command.h"
+#include "picture_sheet.h"
 #include "picture_sink.h"
 
 namespace relief::tools {
@@ -70,6 +71,9 @@ bool lacks_images(const Options& o) {
 bool has_one_image(const Options& o) {
     return !uses_no_environment(o) && o.environment.size() == 1 &&
            !std::filesystem::is_directory(o.environment.front());
+}
+bool has_mistakes(const Options& o) {
+    return !o.mistakes.empty();
 }
 bool has_forced_effects(const Options& o) {
     return o.effects.requests.base != EffectBase::planned || !o.effects.requests.forced.empty();
@@ -165,6 +169,31 @@ const Conflict conflicts[] = {
      "compares with the solution", "leave out --compare, --reference and --steps"},
     {"--exercise", [](const Options& o) { return o.exercise && !o.output && !o.wants_window(); },
      "there is no --output", "add one"},
+    // Mistakes.
+    {"--mistake", [](const Options& o) { return has_mistakes(o) && is_sequence(o); },
+     "applies to one picture, not to a sequence", "leave --turntable or --frames out"},
+    {"--mistake",
+     [](const Options& o) {
+         return has_mistakes(o) && (o.compare.compares() || o.reference || o.steps || o.exercise);
+     },
+     "compares with the picture without the mistake",
+     "leave out --compare, --reference, --steps and --exercise"},
+    {"--mistake",
+     [](const Options& o) {
+         return has_mistakes(o) && (o.effects.measures() || has_forced_effects(o) ||
+                                    o.explain_effects || o.debug.view != DebugView::picture);
+     },
+     "draws the picture with the effects of the scene",
+     "leave out --effects, --explain-effects, --benchmark, --budget and --show"},
+    {"--mistake", [](const Options& o) { return has_mistakes(o) && o.effects.print_shaders; },
+     "contradicts --print-shaders, which prints the right ones", drop_one},
+    {"--mistake", [](const Options& o) { return has_mistakes(o) && o.probe; },
+     "contradicts --probe, which explains the right picture", drop_one},
+    {"--mistake",
+     [](const Options& o) {
+         return o.mistakes.size() > 1 && is_linear_output(o) && !has_numbers(*o.output);
+     },
+     "the sheet of several mistakes has display colors", "write a .png, or put a # into the name"},
     // The probe.
     {"--probe", [](const Options& o) { return o.probe && is_sequence(o); },
      "applies to one picture, not to a sequence", "leave --turntable or --frames out"},
@@ -197,6 +226,8 @@ const Conflict conflicts[] = {
     {"--budget", [](const Options& o) { return is_page(o) && o.effects.budget; }, only_pictures,
      drop_it},
     {"--steps", [](const Options& o) { return is_page(o) && o.steps; }, only_pictures, drop_it},
+    {"--mistake", [](const Options& o) { return is_page(o) && has_mistakes(o); }, only_pictures,
+     drop_it},
     {"--exercise", [](const Options& o) { return is_page(o) && o.exercise; },
      "compares a picture with the solution, and a page is none", "write a picture"},
     // The model.

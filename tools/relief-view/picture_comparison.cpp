@@ -19,7 +19,13 @@ using namespace relief::shade;
 
 namespace {
 
-/// Adds an opaque alpha channel.
+/// The first column of the right side.
+int first_right_column(const Image& image, float split) {
+    return static_cast<int>(std::lround(split * static_cast<float>(image.width)));
+}
+
+}  // namespace
+
 Image with_alpha(const Image& image) {
     Image covered = make_image(image.width, image.height, 4, image.bits(), image.color_space);
     std::visit(
@@ -39,13 +45,6 @@ Image with_alpha(const Image& image) {
 double peak_of(const Image& image) {
     return image.bits() == 8 ? 255.0 : (image.bits() == 16 ? 65535.0 : 1.0);
 }
-
-/// The first column of the right side.
-int first_right_column(const Image& image, float split) {
-    return static_cast<int>(std::lround(split * static_cast<float>(image.width)));
-}
-
-}  // namespace
 
 PictureComparison compare_pictures(const Image& reference, const Image& picture) {
     PictureComparison result;
@@ -164,7 +163,9 @@ void add_reference_options(CLI::App& app, ViewOptions& options) {
 
 void check_reference(const ViewOptions& options) {
     if (!options.reference) {
-        const bool has_sides = (options.compare.compares() || options.exercise) && options.output;
+        const bool has_sides =
+            ((options.compare.compares() || options.exercise) && options.output) ||
+            options.mistakes.size() == 1;
         refuse_without_reference(options.max_difference.has_value(), "--max-difference");
         refuse_without_reference(options.difference_map && !has_sides, "--difference-map");
         if (options.difference_map) check_map(options);

@@ -21,6 +21,12 @@ struct PictureComparison {
     double peak = 1;  ///< The largest sample value: 255, 65535 or 1.
 };
 
+/// Adds an opaque alpha channel.
+Image with_alpha(const Image& image);
+
+/// The largest sample value of an image: 255, 65535 or 1.
+double peak_of(const Image& image);
+
 /// Compares two pictures. A picture without alpha is opaque.
 /// \throws InvalidInput if the sizes, bits or channels differ
 PictureComparison compare_pictures(const Image& reference, const Image& picture);

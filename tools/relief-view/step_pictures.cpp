@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "picture_sheet.h"
 #include "picture_sink.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
@@ -15,31 +16,6 @@ namespace relief::tools {
 using namespace relief::shade;
 
 namespace {
-
-bool has_numbers(const std::filesystem::path& output) {
-    return output.filename().string().find('#') != std::string::npos;
-}
-
-/// Joins pictures of one size, the first one on the left.
-Image strip_of(const std::vector<Image>& pictures) {
-    const Image& first = pictures.front();
-    const auto count = static_cast<int>(pictures.size());
-    Image strip = make_image(count * first.width, first.height, first.channels, first.bits(),
-                             first.color_space);
-    std::visit(
-        [&](auto& to) {
-            const auto row = static_cast<std::ptrdiff_t>(first.width) * first.channels;
-            for (std::ptrdiff_t i = 0; i < count; ++i) {
-                const auto& from = std::get<std::decay_t<decltype(to)>>(
-                    pictures[static_cast<std::size_t>(i)].samples);
-                for (std::ptrdiff_t y = 0; y < first.height; ++y)
-                    std::copy(from.begin() + y * row, from.begin() + (y + 1) * row,
-                              to.begin() + (y * count + i) * row);
-            }
-        },
-        strip.samples);
-    return strip;
-}
 
 Image drawn_step(const Context& context, RenderCache& cache, const ComposedScene& composed,
                  const FrameSettings& settings, const PictureStep& step, Report& report) {
@@ -90,7 +66,7 @@ std::vector<DrawnStep> draw_steps(const ViewOptions& options, const FrameSetting
         drawn.back().change = compare_pictures(pictures[pictures.size() - 2], pictures.back());
     }
     stages.run("write", [&] {
-        if (!has_numbers(output)) return write_image(output, strip_of(pictures));
+        if (!has_numbers(output)) return write_image(output, sheet_of({pictures}));
         for (std::size_t i = 0; i < pictures.size(); ++i)
             write_image(numbered_file(output, static_cast<int>(i) + 1), pictures[i]);
     });

@@ -16,6 +16,7 @@
 #include "common/summary.h"
 #include "effect_options.h"
 #include "exercise.h"
+#include "mistake_pictures.h"
 #include "page_command.h"
 #include "picture_comparison.h"
 #include "picture_sequence.h"
@@ -307,11 +308,14 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
     if (options.probe) probed = probed_pixel(options, composed, settings, stages, report);
     std::optional<Drawn> drawn;
     std::vector<DrawnStep> steps;
+    std::vector<DrawnMistake> mistakes;
     std::optional<WrittenPage> page;
     if (is_page(options)) {
         page = write_page(options, settings, composed, stages, report);
     } else if (options.steps) {
         steps = draw_steps(options, settings, composed, stages, report);
+    } else if (!options.mistakes.empty()) {
+        mistakes = draw_mistakes(options, settings, composed, stages, report);
     } else if (options.output || options.reference || options.effects.measures()) {
         drawn = draw(options, settings, composed, plan, stages, report);
     }
@@ -324,6 +328,7 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
     Summary summary =
         summary_of(options, composed, plan, drawn ? &*drawn : nullptr, markers, findings, stages);
     if (!steps.empty()) add_steps(summary, options, steps);
+    if (!mistakes.empty()) add_mistakes(summary, options, mistakes);
     if (page) add_page(summary, options, *page);
     if (options.json) {
         if (options.explain_effects)
@@ -331,7 +336,7 @@ ExitCode run(const CLI::App& app, ViewOptions& options) {
         if (probed) summary.add_part("", probe_summary(*probed, composed.scene()));
         if (options.effects.print_shaders) summary.add_json({{"shaders", shaders_json(plan)}});
         print_json(summary.json());
-    } else if ((drawn || page || !steps.empty()) && !options.general.quiet) {
+    } else if ((drawn || page || !steps.empty() || !mistakes.empty()) && !options.general.quiet) {
         if (probed || options.explain_effects || options.effects.print_shaders) print_text("\n");
         summary.print();
     }
@@ -367,6 +372,7 @@ Command add_view_command(CLI::App& tool) {
          "--output out/sides.png",
          "relief-view data/scenes/environment-mapping.json --steps --output out/steps.png --size "
          "240x160",
+         "relief-view data/scenes/mistakes.json --mistake green --output out/green-down.png",
          "relief-view data/vase.obj --material gold --output out/vase.html",
          "relief-view data/vase.obj --material gold --light point:2,2,2,4 --save-scene "
          "out/golden.json",

@@ -22,6 +22,7 @@
 #include "relief/mesh/report.h"
 #include "relief/shade/effects.h"
 #include "relief/shade/frame_settings.h"
+#include "relief/shade/mistakes.h"
 #include "relief/shade/renderer.h"
 #include "relief/shade/scene.h"
 #include "relief/shade/scene_file.h"
@@ -124,6 +125,8 @@ struct ViewOptions {
     std::optional<std::filesystem::path> exercise_file;
     std::shared_ptr<const Exercise> exercise;  ///< That of the file; its scene is the model.
     bool steps = false;
+    std::vector<const shade::Mistake*> mistakes;  ///< --mistake
+    bool all_mistakes = false;                    ///< Those of them that show.
 
     std::optional<std::filesystem::path> reference;
     std::optional<double> max_difference;  ///< From the reference. If absent, it is 0.
@@ -179,7 +182,7 @@ struct ViewOptions {
     /// True if no option asks for output.
     [[nodiscard]] bool wants_window() const {
         return !output && !save_scene && !save_model && !reference && !explain_effects && !probe &&
-               !effects.print_shaders && !effects.measures();
+               mistakes.empty() && !effects.print_shaders && !effects.measures();
     }
 
     shade::Backend backend = shade::Backend::automatic;

@@ -82,6 +82,19 @@ void check_texture_units(const PlannedInterface& planned, int available, std::st
                     needed, where, available, fmt::join(samplers, ", ")));
 }
 
+namespace {
+
+/// Adds the uniforms that only edited parts declare, so that they get their values, too.
+void add_active_uniforms(PlannedInterface& planned, const gl::LinkedProgram& program) {
+    std::vector<std::string>& names = planned.uniforms;
+    for (const gl::ActiveVariable& uniform : program.interface().uniforms) {
+        const auto place = std::lower_bound(names.begin(), names.end(), uniform.name);
+        if (place == names.end() || *place != uniform.name) names.insert(place, uniform.name);
+    }
+}
+
+}  // namespace
+
 std::shared_ptr<const DrawProgram> ProgramCache::get(const Features& features) {
     std::shared_ptr<const DrawProgram> entry;
     if (const auto known = programs_.find(features); known != programs_.end())
@@ -91,10 +104,11 @@ std::shared_ptr<const DrawProgram> ProgramCache::get(const Features& features) {
         PlannedInterface planned = planned_interface(features);
         check_texture_units(planned, api_->limits().texture_units);
         const SurfaceProgram source = surface_program(features, GlslVersion::core_330, *texts_);
+        gl::LinkedProgram program = link(*api_, fmt::format("surface ({})", describe(features)),
+                                         source.vertex, source.fragment);
+        add_active_uniforms(planned, program);
         entry = std::make_shared<const DrawProgram>(
-            DrawProgram{link(*api_, fmt::format("surface ({})", describe(features)), source.vertex,
-                             source.fragment),
-                        std::move(planned)});
+            DrawProgram{std::move(program), std::move(planned)});
         programs_.emplace(features, entry);
         milliseconds_ += 1e3 * stopwatch.seconds();
     }

@@ -126,6 +126,62 @@ TEST(StepChoice, KeepsTheWholePictureUntilAStepIsChosen) {
     EXPECT_EQ(choice.shown(), 2U) << "an edit of the scene keeps the step";
 }
 
+TEST(MistakeChoice, ChangesTextsAndSceneOnlyIfOneIsChosen) {
+    const auto scene = std::make_shared<const Scene>(
+        load_scene(test::source_directory() / "data/scenes/mistakes.json"));
+    MistakeChoice choice;
+    EXPECT_EQ(choice.texts(nullptr), nullptr);
+    EXPECT_EQ(choice.scene(scene), scene);
+    choice.choose(find_mistake("green"));
+    const std::shared_ptr<const ShaderTexts> texts = choice.texts(nullptr);
+    ASSERT_TRUE(texts);
+    EXPECT_THAT(texts->files.at("normal_map.glsl"), HasSubstr("vec3(1.0, -1.0, 1.0)"));
+    EXPECT_EQ(choice.texts(nullptr), texts) << "the last result is kept";
+    EXPECT_EQ(choice.scene(scene), scene);
+    choice.choose(find_mistake("srgb"));
+    ASSERT_TRUE(choice.texts(nullptr)) << "another object, so that the picture is drawn again";
+    EXPECT_TRUE(choice.texts(nullptr)->files.empty());
+    const std::shared_ptr<const Scene> wrong = choice.scene(scene);
+    EXPECT_EQ(wrong->images.size(), scene->images.size() + 1);
+    EXPECT_EQ(choice.scene(scene), wrong);
+    choice.choose(nullptr);
+    EXPECT_EQ(choice.texts(nullptr), nullptr);
+    EXPECT_EQ(choice.scene(scene), scene);
+}
+
+class CostOfMistakes : public test::GlTest {};
+RELIEF_ON_DEFAULT_BACKEND(CostOfMistakes);
+
+TEST_P(CostOfMistakes, IsMeasuredWhenThePictureRests) {
+    DrawRequest request;
+    request.scene = std::make_shared<const Scene>(
+        load_scene(test::source_directory() / "data/scenes/mistakes.json"));
+    request.settings.width = 1280;  // Of which half is measured.
+    request.settings.height = 400;
+    request.camera = *request.scene->camera;
+    RenderCache cache(context());
+    MistakeChoice choice;
+    EXPECT_FALSE(choice.begin(request, 0.0)) << "none is chosen";
+    choice.choose(find_mistake("back-faces"));
+    EXPECT_FALSE(choice.begin(request, 1.0));
+    EXPECT_TRUE(choice.is_pending());
+    EXPECT_FALSE(choice.begin(request, 1.2));
+    request.camera.world_from_view[3].x += 0.1F;
+    EXPECT_FALSE(choice.begin(request, 1.4)) << "the camera has moved";
+    std::optional<DrawTask> task = choice.begin(request, 1.8);
+    ASSERT_TRUE(task);
+    EXPECT_FALSE((*task)(context(), cache));
+    EXPECT_FALSE(choice.is_pending());
+    ASSERT_TRUE(choice.cost());
+    ASSERT_TRUE(choice.cost()->angles);
+    EXPECT_NEAR(choice.cost()->angles->max, 180.0, 1e-3);
+    EXPECT_EQ(choice.cost()->change->flip.map.width, 640);
+    EXPECT_EQ(choice.json()["chosen"], "back-faces");
+    EXPECT_FALSE(choice.begin(request, 9.0)) << "nothing is new";
+    choice.choose(find_mistake("green"));
+    EXPECT_FALSE(choice.cost()) << "it is that of another mistake";
+}
+
 class CheckOfExercise : public test::GlTest {};
 RELIEF_ON_DEFAULT_BACKEND(CheckOfExercise);
 

@@ -48,5 +48,21 @@ TEST(ShaderWindow, ShowsTheStepsOfThePicture) {
     });
 }
 
+TEST(ShaderWindow, ShowsAMistakeAndItsCost) {
+    RELIEF_NEEDS_DISPLAY(display);
+    const Workplace workplace;
+    ViewerWindow window(*display, workplace, "data/scenes/mistakes.json --samples 1");
+    open_shaders(window);
+    window.click_on("Mistake");
+    window.click_on("mistake back-faces");
+    const json wrong = window.wait_for("the cost", [](const json& now) {
+        const json& mistake = now["shaders"]["mistake"];
+        return mistake["chosen"] == "back-faces" && !mistake["cost"].is_null() &&
+               now["drawn"]["revision"] == now["revision"];
+    });
+    EXPECT_THAT(wrong["shaders"]["mistake"]["cost"].get<std::string>(),
+                testing::HasSubstr("largest 180), on 1 of 4 surfaces"));
+}
+
 }  // namespace
 }  // namespace relief::tools

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "window/lesson.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "picture_comparison.h"
@@ -33,6 +34,92 @@ nlohmann::ordered_json StepChoice::json() const {
     for (const PictureStep& step : steps_)
         names.push_back(step.name);
     return {{"names", names}, {"shown", shown_}};
+}
+
+std::shared_ptr<const ShaderTexts> MistakeChoice::texts(
+    const std::shared_ptr<const ShaderTexts>& right) {
+    if (chosen_ == nullptr) return right;
+    if (of_texts_ == chosen_ && right_texts_ == right) return wrong_texts_;
+    of_texts_ = chosen_;
+    right_texts_ = right;
+    try {
+        wrong_texts_ = with_mistake(*chosen_, right);
+    } catch (const Error&) {  // Somebody edits the code that the mistake changes.
+        wrong_texts_ = right;
+    }
+    if (wrong_texts_ == right)
+        wrong_texts_ = std::make_shared<const ShaderTexts>(right ? *right : ShaderTexts{});
+    return wrong_texts_;
+}
+
+std::shared_ptr<const Scene> MistakeChoice::scene(const std::shared_ptr<const Scene>& right) {
+    if (!right || chosen_ == nullptr || !chosen_->code.empty()) return right;
+    if (of_scene_ == chosen_ && right_scene_ == right) return wrong_scene_;
+    of_scene_ = chosen_;
+    right_scene_ = right;
+    wrong_scene_ = std::make_shared<const Scene>(with_mistake(*chosen_, *right));
+    return wrong_scene_;
+}
+
+std::optional<DrawTask> MistakeChoice::begin(const DrawRequest& right, double now) {
+    constexpr double rest = 0.3;       // Seconds without a change.
+    constexpr int largest_side = 640;  // Of the pictures that are compared.
+    if (chosen_ == nullptr || !right.scene || is_working()) return std::nullopt;
+    const Subject subject{chosen_,      right.revision,       right.pose,
+                          right.camera, right.settings.width, right.settings.height};
+    if (last_ != subject) {
+        last_ = subject;
+        changed_ = now;
+    }
+    if (measured_ == subject || now - changed_ < rest) return std::nullopt;
+    measured_ = subject;
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->is_working = true;
+    }
+    const int larger = std::max(subject.width, subject.height);
+    const double scale = std::min(1.0, static_cast<double>(largest_side) / larger);
+    FrameSettings settings;
+    settings.width = std::max(1, static_cast<int>(subject.width * scale));
+    settings.height = std::max(1, static_cast<int>(subject.height * scale));
+    settings.samples = right.settings.samples;
+    settings.shaders = right.settings.shaders;
+    return [mistake = chosen_, settings, scene = right.scene, camera = right.camera,
+            state = state_](const Context& context, RenderCache& cache) {
+        std::optional<DrawnMistake> cost;
+        try {
+            cost = measured_mistake(*mistake, *scene, camera, settings, context, cache);
+        } catch (const Error&) {  // The status line has the error of the window's picture.
+            cost.reset();
+        }
+        const std::lock_guard lock(state->mutex);
+        state->cost = std::move(cost);
+        state->is_working = false;
+        return false;
+    };
+}
+
+std::optional<DrawnMistake> MistakeChoice::cost() const {
+    const std::lock_guard lock(state_->mutex);
+    const bool is_chosen = state_->cost && state_->cost->mistake == chosen_;
+    return is_chosen ? state_->cost : std::nullopt;
+}
+
+bool MistakeChoice::is_pending() const {
+    return chosen_ != nullptr && (measured_ != last_ || is_working());
+}
+
+bool MistakeChoice::is_working() const {
+    const std::lock_guard lock(state_->mutex);
+    return state_->is_working;
+}
+
+nlohmann::ordered_json MistakeChoice::json() const {
+    const std::optional<DrawnMistake> now = cost();
+    nlohmann::ordered_json json = {{"chosen", nullptr}, {"cost", nullptr}};
+    if (chosen_ != nullptr) json["chosen"] = chosen_->name;
+    if (now) json["cost"] = cost_text(*now);
+    return json;
 }
 
 std::optional<DrawTask> ExerciseCheck::begin(const std::shared_ptr<const Exercise>& exercise,

@@ -186,6 +186,34 @@ void ShaderPanel::draw_steps(const PanelInput& input) {
     ImGui::TextWrapped("%s", step.what.c_str());
 }
 
+/// A combo box of mistakes, what the chosen one is, and its cost.
+void ShaderPanel::draw_mistakes(const PanelInput& input) {
+    const Mistake* const chosen = mistakes_.chosen();
+    const std::string name = chosen == nullptr ? "none" : std::string(chosen->name);
+    if (ImGui::BeginCombo(begin_row("Mistake").c_str(), name.c_str())) {
+        const auto entry = [&](const std::string& text, const Mistake* mistake) {
+            if (ImGui::Selectable(text.c_str(), mistake == chosen)) mistakes_.choose(mistake);
+            probe_item("mistake " + text);
+        };
+        entry("none", nullptr);
+        for (const Mistake& mistake : shade::mistakes())
+            entry(std::string(mistake.name), &mistake);
+        ImGui::EndCombo();
+    }
+    probe_item("Mistake");
+    if (chosen == nullptr) return;
+    ImGui::TextWrapped("%s.", std::string(chosen->what).c_str());
+    for (const WrongCode& code : chosen->code) {
+        if (!input.drawn.plan || std::find(parts_.begin(), parts_.end(), code.part) == parts_.end())
+            continue;
+        ImGui::TextDisabled("%s", std::string(code.part).c_str());
+        ImGui::TextColored(solved_color, "%s", std::string(code.right).c_str());
+        ImGui::TextColored(error_color, "%s", std::string(code.wrong).c_str());
+    }
+    if (const std::optional<DrawnMistake> cost = mistakes_.cost())
+        ImGui::TextWrapped("%s", cost_text(*cost).c_str());
+}
+
 // The editor.
 
 void ShaderPanel::select(const std::string& part) {
@@ -296,6 +324,7 @@ void ShaderPanel::draw(const PanelInput& input) {
     assembled_texts_ = edits_.texts();
     draw_exercise();
     draw_steps(input);
+    draw_mistakes(input);
     draw_editor(error_.empty() ? input.drawn.error : error_);
     draw_programs();
 }
@@ -308,6 +337,7 @@ nlohmann::ordered_json ShaderPanel::json() const {
         json["messages"].push_back({message.line, message.text});
     json["saved"] = saved_;
     json["steps"] = steps_.json();
+    json["mistake"] = mistakes_.json();
     json["exercise"] = exercise_ ? check_.json() : nullptr;
     return json;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The shaders of the picture in the effects panel: the steps of the picture, the parts, which can
-/// be edited in place, the exercise, and the assembled programs.
-/// Tests: tests/tools/window/effects_panel_test.cpp, shader_window_test.cpp.
+/// The shaders of the picture in the effects panel: the steps and mistakes of the picture, the
+/// parts, which can be edited in place, the exercise, and the assembled programs. Tests:
+/// tests/tools/window/effects_panel_test.cpp, shader_window_test.cpp.
 #pragma once
 
 #include <memory>
@@ -36,8 +36,11 @@ class ShaderPanel {
     /// The step that the pictures show.
     [[nodiscard]] const StepChoice& steps() const { return steps_; }
     ExerciseCheck& exercise_check() { return check_; }
+    /// The mistake that the pictures have.
+    MistakeChoice& mistakes() { return mistakes_; }
 
-    /// {"part", "messages", "saved", "steps", "exercise", and the members of ShaderEdits::json()}
+    /// {"part", "messages", "saved", "steps", "mistake", "exercise", and the members of
+    /// ShaderEdits::json()}
     [[nodiscard]] nlohmann::ordered_json json() const;
 
   private:
@@ -53,6 +56,7 @@ class ShaderPanel {
 
     void draw_exercise();
     void draw_steps(const PanelInput& input);
+    void draw_mistakes(const PanelInput& input);
     void select(const std::string& part);
     void draw_choice();
     void draw_editor(const std::string& error);
@@ -61,6 +65,7 @@ class ShaderPanel {
 
     ShaderEdits edits_;
     StepChoice steps_;
+    MistakeChoice mistakes_;
     ExerciseCheck check_;
     std::shared_ptr<const Exercise> exercise_;
     double now_ = 0.0;

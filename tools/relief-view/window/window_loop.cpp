@@ -162,12 +162,17 @@ class WindowLoop {
         }
     }
 
-    /// Applies edits of shaders and the chosen step, and compares an exercise with its solution.
+    /// Applies edits of shaders, the chosen step and mistake, and compares an exercise with its
+    /// solution.
     void follow_shaders() {
         shaders_.follow(state_.options().exercise, glfwGetTime());
-        state_.set_shaders(shaders_.edits().texts(), shaders_.steps().chosen());
+        MistakeChoice& mistakes = shaders_.mistakes();
+        state_.set_shaders(mistakes.texts(shaders_.edits().texts()), shaders_.steps().chosen());
         std::optional<DrawRequest> request = state_.request();
         if (!request) return;
+        request->settings.shaders = shaders_.edits().texts();
+        if (std::optional<DrawTask> task = mistakes.begin(*request, glfwGetTime()))
+            drawer_.add(std::move(*task));
         request->scene = state_.shared_scene();
         if (std::optional<DrawTask> task = shaders_.exercise_check().begin(
                 state_.options().exercise, *request, state_.options().size))
@@ -179,7 +184,7 @@ class WindowLoop {
         return loader_.is_loading() || drawer_.is_busy() || accuracy_.is_measuring() ||
                effect_times_.state().is_running || captured_->state().is_running() ||
                saving_.is_running() || probe_.is_working() || shaders_.edits().is_pending() ||
-               shaders_.exercise_check().is_working();
+               shaders_.exercise_check().is_working() || shaders_.mistakes().is_pending();
     }
 
     double seconds_since_last() {
@@ -415,7 +420,7 @@ class WindowLoop {
 
     /// Starts and stops the measurement of effect times, and discards outdated ones.
     void measure(const RenderedPicture& drawn, const PanelRequests& requests) {
-        const std::optional<DrawRequest> request = state_.request();
+        const std::optional<DrawRequest> request = shown_request();
         if (!request || requests.stop_measuring) return effect_times_.cancel();
         if (requests.measure_effects) drawer_.add(effect_times_.start(*request));
         if (drawn.plan && drawn.revision == request->revision)
@@ -424,7 +429,7 @@ class WindowLoop {
 
     /// Saves one picture or a turntable, unless pictures are being saved.
     void save(int turntable) {
-        const std::optional<DrawRequest> request = state_.request();
+        const std::optional<DrawRequest> request = shown_request();
         if (!request || captured_->state().is_running()) return;
         CaptureRequest capture{.scene = request->scene,
                                .effects = request->effects,
@@ -448,9 +453,16 @@ class WindowLoop {
                                                           : pictures + "   " + saving_.text();
     }
 
+    /// The request of the picture, with the chosen mistake.
+    std::optional<DrawRequest> shown_request() {
+        std::optional<DrawRequest> request = state_.request();
+        if (request) request->scene = shaders_.mistakes().scene(request->scene);
+        return request;
+    }
+
     /// Requests a picture if it differs from the last request. \return whether it does
     bool request_picture() {
-        std::optional<DrawRequest> request = state_.request();
+        std::optional<DrawRequest> request = shown_request();
         if (!request) return false;
         if (std::optional<DrawTask> task = comparison_.add_to(*request))
             drawer_.add(std::move(*task));
