@@ -21,9 +21,6 @@ using namespace relief::shade;
 
 namespace {
 
-/// Larger files take long to open.
-constexpr std::size_t large_page = 100'000'000;
-
 DebugView view_of(const std::string& subject, const std::string& name) {
     for (const DebugViewInfo& info : debug_views()) {
         if (info.name == name) return info.view;
@@ -112,6 +109,14 @@ bool is_page(const ViewOptions& options) {
     return options.output && extension_of(*options.output) == ".html";
 }
 
+void report_size(std::size_t bytes, Report& report) {
+    constexpr std::size_t megabyte = 1'000'000;
+    if (bytes > 100 * megabyte) {
+        report.add("page larger than 100 MB", "megabyte", bytes / megabyte,
+                   "browsers take long to open it");
+    }
+}
+
 WrittenPage write_page(const ViewOptions& options, const FrameSettings& settings,
                        const ComposedScene& composed, Stages& stages, Report& report) {
     const std::unique_ptr<Context> context =
@@ -135,10 +140,7 @@ WrittenPage write_page(const ViewOptions& options, const FrameSettings& settings
             page_html(page, composed, views.names(), options.model.filename().string(),
                       options.time.value_or(0.0),
                       static_cast<double>(options.size.x) / options.size.y, codes);
-        if (text.size() > large_page) {
-            report.add("page larger than 100 MB", "megabyte", text.size() / 1'000'000,
-                       "browsers take long to open it");
-        }
+        report_size(text.size(), report);
         relief::detail::FileReplacement file(*options.output);
         relief::detail::write_all(file, std::as_bytes(std::span(text)));
         file.commit();

@@ -30,6 +30,9 @@ struct WrittenPage {
     std::map<std::string, double> quantization;  ///< The errors of attributes, by name.
 };
 
+/// Reports a page above 100 MB, which browsers take long to open.
+void report_size(std::size_t bytes, Report& report);
+
 /// Records the scene and writes the page.
 /// \param settings  of the picture that the command line draws
 /// \throws InvalidInput for scenes that need more than WebGL 2 guarantees

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "page_command.h"
 #include "page_quantize.h"
 #include "page_writer.h"
 #include "support/labels.h"
@@ -124,6 +125,147 @@ TEST(ViewPage, RefusesWhatAPageDoesNotHave) {
     EXPECT_EQ(unknown.exit_code, 2);
     EXPECT_THAT(unknown.error, HasSubstr("there is no view 'normal'"));
     EXPECT_EQ(workplace.outputs(), "");
+}
+
+TEST(PageSize, WarnsAbove100Megabytes) {
+    Report report;
+    report_size(100'000'000, report);
+    EXPECT_TRUE(report.findings().empty());
+    report_size(123'456'789, report);
+    ASSERT_EQ(report.findings().size(), 1U);
+    EXPECT_EQ(report.findings().front().kind, "page larger than 100 MB");
+    EXPECT_EQ(report.findings().front().first, (std::vector<std::size_t>{123}));
+}
+
+/// A glTF file with one triangle, whose metallic-roughness material has a map in each slot.
+json material_of_all_maps(bool has_layers) {
+    const json map = {{"index", 0}};
+    json material = {
+        {"pbrMetallicRoughness", {{"baseColorTexture", map}, {"metallicRoughnessTexture", map}}},
+        {"normalTexture", map},
+        {"occlusionTexture", map},
+        {"emissiveTexture", map},
+        {"emissiveFactor", {1, 1, 1}}};
+    json& more = material["extensions"];
+    more["KHR_materials_specular"] = {{"specularTexture", map}, {"specularColorTexture", map}};
+    more["KHR_materials_clearcoat"] = {{"clearcoatFactor", 1},
+                                       {"clearcoatTexture", map},
+                                       {"clearcoatRoughnessFactor", 1},
+                                       {"clearcoatRoughnessTexture", map},
+                                       {"clearcoatNormalTexture", map}};
+    if (has_layers) {
+        more["KHR_materials_sheen"] = {{"sheenColorFactor", {1, 1, 1}},
+                                       {"sheenColorTexture", map},
+                                       {"sheenRoughnessFactor", 1},
+                                       {"sheenRoughnessTexture", map}};
+        more["KHR_materials_anisotropy"] = {{"anisotropyStrength", 1}, {"anisotropyTexture", map}};
+        more["KHR_materials_iridescence"] = {{"iridescenceFactor", 1},
+                                             {"iridescenceTexture", map},
+                                             {"iridescenceThicknessTexture", map}};
+        more["KHR_materials_transmission"] = {{"transmissionFactor", 1},
+                                              {"transmissionTexture", map}};
+        more["KHR_materials_volume"] = {{"thicknessFactor", 1}, {"thicknessTexture", map}};
+    }
+    return material;
+}
+
+json triangle_with(const json& material) {
+    json file = {{"asset", {{"version", "2.0"}}},
+                 {"scene", 0},
+                 {"scenes", {{{"nodes", {0}}}}},
+                 {"nodes", {{{"mesh", 0}}}},
+                 {"images", {{{"uri", "map.png"}}}},
+                 {"textures", {{{"source", 0}}}},
+                 {"materials", {material}},
+                 {"meshes",
+                  {{{"primitives",
+                     {{{"attributes", {{"POSITION", 0}, {"TEXCOORD_0", 1}}}, {"material", 0}}}}}}},
+                 {"buffers", {{{"byteLength", 60}, {"uri", "triangle.bin"}}}},
+                 {"bufferViews",
+                  {{{"buffer", 0}, {"byteLength", 36}},
+                   {{"buffer", 0}, {"byteOffset", 36}, {"byteLength", 24}}}},
+                 {"accessors",
+                  {{{"bufferView", 0},
+                    {"componentType", 5126},
+                    {"count", 3},
+                    {"type", "VEC3"},
+                    {"min", {0, 0, 0}},
+                    {"max", {1, 1, 0}}},
+                   {{"bufferView", 1}, {"componentType", 5126}, {"count", 3}, {"type", "VEC2"}}}}};
+    for (const auto& [name, value] : material["extensions"].items())
+        file["extensionsUsed"].push_back(name);
+    return file;
+}
+
+void write_floats(const Workplace& workplace, const std::string& name,
+                  const std::vector<float>& values) {
+    workplace.write(name, std::string(reinterpret_cast<const char*>(values.data()),
+                                      values.size() * sizeof(float)));
+}
+
+TEST(ViewPage, RefusesMoreTexturesThanWebGlGuarantees) {
+    const Workplace workplace;
+    write_floats(workplace, "triangle.bin", {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1});
+    ASSERT_EQ(workplace.run("cp data/bricks-diffuse.png map.png").exit_code, 0);
+    for (const bool has_layers : {false, true}) {
+        workplace.write("all.gltf", triangle_with(material_of_all_maps(has_layers)).dump());
+        const ProgramResult result = workplace.run(
+            "relief-view all.gltf --environment data/sky --output out/p.html --quiet");
+        if (!has_layers) {
+            EXPECT_EQ(result.exit_code, 0) << result.error;
+            EXPECT_EQ(workplace.outputs(), "p.html");
+            ASSERT_EQ(workplace.run("rm out/p.html").exit_code, 0);
+            continue;
+        }
+        EXPECT_EQ(result.exit_code, 1) << result.out;
+        EXPECT_THAT(result.error, HasSubstr("textures at once, and a shader of WebGL 2 can sample "
+                                            "16: "));
+        EXPECT_EQ(workplace.outputs(), "") << "nothing is written";
+    }
+}
+
+TEST(ViewPage, ReportsTexturesLargerThanWebGlGuarantees) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    for (const int width : {2048, 2049}) {
+        write_image(workplace / "wide.png", make_image(width, 2, 3, 8, ColorSpace::srgb));
+        const ProgramResult result = workplace.run(
+            "relief-view square.obj --diffuse-map wide.png --output out/p.html --json --quiet");
+        ASSERT_EQ(result.exit_code, 0) << result.error;
+        EXPECT_EQ(result.out.find("texture larger than the 2048 texels that WebGL 2 guarantees") !=
+                      std::string::npos,
+                  width > 2048);
+    }
+}
+
+TEST(ViewPage, RefusesMoreRowsThanATextureHolds) {
+    const Workplace workplace;
+    // A grid of 260 x 260 vertices with 63 morph targets, which are one accessor.
+    constexpr int side = 260;
+    std::vector<float> positions;
+    for (int i = 0; i < side * side; ++i)
+        positions.insert(positions.end(), {static_cast<float>(i % side) / side,
+                                           static_cast<float>(i / side) / side, 0.0F});
+    write_floats(workplace, "triangle.bin", positions);
+    json file = triangle_with(json::object({{"extensions", json::object()}}));
+    file.erase("images");
+    file.erase("textures");
+    file.erase("materials");
+    file["buffers"][0]["byteLength"] = positions.size() * sizeof(float);
+    file["bufferViews"] = {{{"buffer", 0}, {"byteLength", positions.size() * sizeof(float)}}};
+    json& accessor = file["accessors"][0];
+    accessor["count"] = side * side;
+    file["accessors"] = {accessor};
+    const json targets(63, json({{"POSITION", 0}}));
+    file["meshes"][0] = {
+        {"primitives", {{{"attributes", {{"POSITION", 0}}}, {"mode", 5}, {"targets", targets}}}},
+        {"weights", std::vector<double>(63, 0.01)}};
+    workplace.write("many.gltf", file.dump());
+    const ProgramResult result =
+        workplace.run("relief-view many.gltf --output out/p.html --quiet --size 64x64");
+    EXPECT_EQ(result.exit_code, 1) << result.out;
+    EXPECT_THAT(result.error, HasSubstr("a texture of WebGL 2 holds 4194304"));
+    EXPECT_EQ(workplace.outputs(), "") << "nothing is written";
 }
 
 /// Runs view_page_test.py.

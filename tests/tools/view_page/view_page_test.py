@@ -8,6 +8,7 @@ SHARED. Exits with 77 without a browser (Debian's chromium and chromium-driver).
 view_page_test.cpp.
 """
 import base64
+import html
 import json
 import os
 import pathlib
@@ -223,8 +224,49 @@ class ViewPage(unittest.TestCase):
         self.page("phone.html", "data/scenes/illumination.json")
         self.window.resize(390, 844, is_phone=True)
         self.assertEqual(self.window.run("return document.scrollingElement.scrollWidth"), 390)
+        self.assertEqual(self.window.run("return document.scrollingElement.scrollHeight"), 844)
+        outside = ("return [...page.root.querySelectorAll('canvas, button, input, select, summary')].filter((e) => e.offsetParent)"
+                   ".map((e) => e.getBoundingClientRect()).filter((b) => b.left < 0 || b.right > 390 || b.bottom > 844).length")
+        self.assertEqual(self.run_in(outside), 0)
         self.assertGreater(self.run_in("return page.canvas.getBoundingClientRect().height"), 500)
         self.window.resize(1280, 900)
+
+    def test_two_pages_at_once(self):
+        sources = {"vase": ["data/vase.obj", "--height-map", "data/bricks-height.png"],
+                   "illumination": ["data/scenes/illumination.json"]}
+        alone = {}
+        for name, arguments in sources.items():
+            self.page(f"{name}.html", *arguments)
+            alone[name] = self.pixels()
+        frames = "".join(f'<iframe srcdoc="{html.escape((self.work / name).with_suffix(".html").read_text())}"></iframe>'
+                         for name in sources)
+        both = self.work / "both.html"
+        both.write_text(f"<!doctype html><title>both</title>{frames}")
+        self.window.open(both)
+        root = "frames[arguments[0]].document.querySelector('.relief')"
+        self.window.wait_for(f"return [0, 1].every((i) => {root.replace('arguments[0]', 'i')}?.dataset.state === 'ready')", 300)
+        drawn = [self.window.run(f"return {root}.relief.pixels(96, 72)", i) for i in (0, 1, 0)]
+        self.assertNotEqual(drawn[0], drawn[1])
+        self.assertEqual(drawn[0], drawn[2])
+        for name, coded in zip(sources, drawn):
+            rows = base64.b64decode(coded)
+            self.assertEqual(b"".join(rows[384 * y:384 * (y + 1)] for y in reversed(range(72))), alone[name])
+
+    def test_respects_reduced_motion(self):
+        for value in ("reduce", "no-preference"):
+            self.window.devtools("Emulation.setEmulatedMedia",
+                                 features=[{"name": "prefers-reduced-motion", "value": value}])
+            self.page("still.html", "data/scenes/illumination.json", "--size", "64x64")
+            self.run_in("page.drawn = 0; const draw = page.draw; page.draw = (...size) => { page.drawn++; draw.apply(page, size); };"
+                        "page.orbit(0.3, 0.1)")
+            self.window.wait_for(f"return {pages.ROOT}.relief.drawn > 0")
+            # Nothing moves by itself: neither the scene, nor the camera after it was let go.
+            before = self.run_in("return JSON.stringify(page.camera)")
+            self.window.run("return new Promise((done) => setTimeout(done, 400))")
+            self.assertEqual(self.run_in("return [page.drawn, page.scene.time, Boolean(page.isPlaying)]"), [1, 0, False])
+            self.assertEqual(self.run_in("return JSON.stringify(page.camera)"), before)
+            self.assertEqual(self.window.run("return document.getAnimations().length"), 0)
+        self.window.devtools("Emulation.setEmulatedMedia", features=[])
 
     def test_says_what_is_missing(self):
         file = self.work / "missing.html"

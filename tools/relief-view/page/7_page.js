@@ -47,7 +47,6 @@ class Page {
     this.painter = new Painter(gpu, this.scene);
     this.root.dataset.state = 'ready';
     this.change();
-    if (this.page.plays && !matchMedia('(prefers-reduced-motion: reduce)').matches) this.play(true);
   }
 
   // Draws before the browser shows the next frame.
