@@ -27,6 +27,8 @@ struct WrittenPage {
     std::size_t programs = 0;
     std::size_t textures = 0;
     std::size_t pictures = 0;
+    std::size_t steps = 0;
+    std::size_t probes = 0;                      ///< Explained pixels.
     std::map<std::string, double> quantization;  ///< The errors of attributes, by name.
 };
 
@@ -36,7 +38,7 @@ void report_size(std::size_t bytes, Report& report);
 /// Records the scene and writes the page.
 /// \param settings  of the picture that the command line draws
 /// \throws InvalidInput for scenes that need more than WebGL 2 guarantees
-WrittenPage write_page(const ViewOptions& options, const shade::FrameSettings& settings,
+WrittenPage write_page(const ViewOptions& given, const shade::FrameSettings& settings,
                        const ComposedScene& composed, Stages& stages, Report& report);
 
 }  // namespace relief::tools

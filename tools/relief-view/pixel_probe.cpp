@@ -13,32 +13,20 @@ using namespace relief::shade;
 
 namespace {
 
-/// Draws the picture with other samples and coding, and returns its pixel.
-class DrawnPixel {
-  public:
-    DrawnPixel(const ViewOptions& options, const ComposedScene& composed,
-               const FrameSettings& settings)
-        : options_(options), composed_(composed), settings_(settings), context_(options.backend) {}
-
-    [[nodiscard]] glm::dvec4 at(const glm::ivec2& pixel, int samples, OutputCoding output) const {
-        FrameSettings settings = settings_;
-        settings.samples = samples;
-        settings.output = output;
-        Report same;  // The report of the picture has these findings.
-        const Scene& scene = composed_.scene();
-        Renderer renderer(
-            context_, scene,
-            viewed_plan(options_, scene, settings, chosen_plan(options_, scene, settings), same),
-            settings, same);
-        return pixel_of(renderer.draw(composed_.camera).image, pixel);
-    }
-
-  private:
-    const ViewOptions& options_;
-    const ComposedScene& composed_;
-    const FrameSettings& settings_;
-    Context context_;
-};
+/// Draws the picture with other samples and coding.
+Image drawn_picture(const Context& context, const ViewOptions& options,
+                    const ComposedScene& composed, FrameSettings settings, int samples,
+                    OutputCoding output) {
+    settings.samples = samples;
+    settings.output = output;
+    Report same;  // The report of the picture has these findings.
+    const Scene& scene = composed.scene();
+    Renderer renderer(
+        context, scene,
+        viewed_plan(options, scene, settings, chosen_plan(options, scene, settings), same),
+        settings, same);
+    return renderer.draw(composed.camera).image;
+}
 
 }  // namespace
 
@@ -72,23 +60,38 @@ ProbedPixel probed_pixel(const ViewOptions& options, const ComposedScene& compos
                                      place.x, place.y, settings.width, settings.height),
                          "--size sets the size");
     }
+    return probed_pixels(options, composed, settings, {place}, stages, report).front();
+}
+
+std::vector<ProbedPixel> probed_pixels(const ViewOptions& options, const ComposedScene& composed,
+                                       const FrameSettings& settings,
+                                       const std::vector<glm::ivec2>& places, Stages& stages,
+                                       Report& report) {
     Scene scene = composed.scene();
     scene.camera = composed.camera;
-    ProbedPixel pixel;
+    std::vector<ProbedPixel> pixels;
     stages.run("explain", [&] {
         const Prober prober(scene, {settings.width, settings.height}, report);
-        pixel = reference_values(prober.at(place.x, place.y, settings.view), scene);
+        for (const glm::ivec2& place : places) {
+            pixels.push_back(reference_values(prober.at(place.x, place.y, settings.view), scene));
+        }
     });
     stages.run("draw", [&] {
-        const DrawnPixel drawn(options, composed, settings);
-        pixel.shader = PixelValues{drawn.at(place, 1, OutputCoding::linear),
-                                   drawn.at(place, 1, OutputCoding::srgb)};
-        pixel.samples = settings.samples;
-        pixel.picture = settings.samples == 1
-                            ? pixel.shader->codes
-                            : drawn.at(place, settings.samples, OutputCoding::srgb);
+        const Context context(options.backend);
+        const auto draw = [&](int samples, OutputCoding output) {
+            return drawn_picture(context, options, composed, settings, samples, output);
+        };
+        const Image linear = draw(1, OutputCoding::linear);
+        const Image codes = draw(1, OutputCoding::srgb);
+        const Image picture =
+            settings.samples == 1 ? codes : draw(settings.samples, OutputCoding::srgb);
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            pixels[i].shader = PixelValues{pixel_of(linear, places[i]), pixel_of(codes, places[i])};
+            pixels[i].samples = settings.samples;
+            pixels[i].picture = pixel_of(picture, places[i]);
+        }
     });
-    return pixel;
+    return pixels;
 }
 
 }  // namespace relief::tools

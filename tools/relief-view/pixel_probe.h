@@ -5,6 +5,9 @@
 /// Tests: tests/tools/probe_test.cpp.
 #pragma once
 
+#include <glm/glm.hpp>
+#include <vector>
+
 #include "probe_report.h"
 #include "relief/shade/renderer.h"
 #include "scene_options.h"
@@ -22,5 +25,12 @@ void check_probed_view(const ViewOptions& options);
 /// \throws UsageError if the pixel is outside of the picture
 ProbedPixel probed_pixel(const ViewOptions& options, const ComposedScene& composed,
                          const shade::FrameSettings& settings, Stages& stages, Report& report);
+
+/// Explains several pixels of one picture, as probed_pixel() does.
+/// \param places  columns and rows, inside of the picture
+std::vector<ProbedPixel> probed_pixels(const ViewOptions& options, const ComposedScene& composed,
+                                       const shade::FrameSettings& settings,
+                                       const std::vector<glm::ivec2>& places, Stages& stages,
+                                       Report& report);
 
 }  // namespace relief::tools

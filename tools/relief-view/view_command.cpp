@@ -161,6 +161,8 @@ void add_page(Summary& summary, const ViewOptions& options, const WrittenPage& p
                   {{"output", options.output->string()},
                    {"bytes", page.bytes},
                    {"pictures", page.pictures},
+                   {"steps", page.steps},
+                   {"probes", page.probes},
                    {"programs", page.programs},
                    {"textures", page.textures},
                    {"quantization", Json(page.quantization)}}}});

@@ -191,6 +191,7 @@ struct ViewOptions {
     DebugChoices debug;
     std::vector<shade::DebugView> page_views;  ///< --page-views
     bool page_quantize = false;                ///< --page-quantize
+    glm::ivec2 page_probes{0};                 ///< --page-probes: columns and rows of pixels.
     CompareChoices compare;
     bool json = false;
     bool strict = false;

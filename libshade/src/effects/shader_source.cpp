@@ -166,8 +166,12 @@ class Assembler {
         open_.pop_back();
     }
 
+    /// Adds the part that includes all others, and returns the source.
     /// \throws GpuError if global variables have values, and no line is "void main() {"
-    ShaderSource take() {
+    ShaderSource finish(std::string_view main) {
+        source_.main = main;
+        source_.head_size = source_.text.size();
+        add_part(main, "");
         if (!assignments_.empty()) throw GpuError("a shader has no line 'void main() {'");
         return std::move(source_);
     }
@@ -207,8 +211,10 @@ class Assembler {
 
     void add_step(std::string_view name, const std::string& place) {
         if (const auto step = steps_.find(name); step != steps_.end()) {
+            source_.steps.emplace(name, step->second);
             add_part(step->second, place);
         } else if (const ShaderPart* const neutral = find_neutral_code(name)) {
+            source_.steps.emplace(name, neutral->address);
             add_part(neutral->address, place);
         } else {
             throw GpuError(fmt::format("{}: no part is chosen for <{}>", place, name));
@@ -254,8 +260,7 @@ ShaderSource assemble(std::string_view part, const ShaderSteps& steps,
     for (const auto& [name, value] : constants) {
         assembler.add_line(fmt::format("const int {} = {};", name, value), {});
     }
-    assembler.add_part(part, "");
-    return assembler.take();
+    return assembler.finish(part);
 }
 
 void choose_part(ShaderSteps& steps, std::string_view part) {

@@ -36,6 +36,10 @@ struct ShaderSource {
     std::vector<SourceLine> lines;   ///< The origin of every line of `text`.
     std::vector<std::string> files;  ///< In the order of their first lines.
     std::vector<std::string> parts;  ///< Addresses, in the same order; without neutral code.
+
+    std::string main;                          ///< The part that includes all others.
+    std::size_t head_size = 0;                 ///< Of `text` before that part.
+    std::map<std::string, std::string> steps;  ///< The included part or neutral code of each step.
 };
 
 /// The address of the part that is chosen for each step.

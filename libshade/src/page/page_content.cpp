@@ -151,8 +151,21 @@ std::size_t PageContent::section(std::vector<std::byte> bytes) {
     return description.sections.size() - 1;
 }
 
-std::size_t PageContent::program(PageProgram program) {
-    return programs_.add(description.programs, std::move(program));
+PageStage PageContent::stage(const ShaderSource& source, const ShaderTexts& texts) {
+    const auto store = [&](const std::string& address) {
+        const auto [part, is_new] = description.parts.try_emplace(address);
+        if (is_new) part->second = shader_part_text(address, texts).text;
+    };
+    for (const std::string& part : source.parts)
+        store(part);
+    for (const auto& [step, part] : source.steps)
+        store(part);
+    return {source.text.substr(0, source.head_size), source.main, source.steps};
+}
+
+std::size_t PageContent::program(const SurfaceProgram& program, const ShaderTexts& texts) {
+    return programs_.add(description.programs,
+                         {stage(program.vertex, texts), stage(program.fragment, texts)});
 }
 
 std::size_t PageContent::surface(PageSurface surface) {

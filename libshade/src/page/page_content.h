@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "effects/shader_source.h"
 #include "gl/api.h"
 #include "gl/program.h"
 #include "relief/shade/image_source.h"
@@ -41,7 +42,8 @@ class PageContent {
     explicit PageContent(const gl::Api& api) : api_(&api) {}
 
     std::size_t section(std::vector<std::byte> bytes);
-    std::size_t program(PageProgram program);
+    /// Stores a program as its stages, and their parts.
+    std::size_t program(const SurfaceProgram& program, const ShaderTexts& texts);
     std::size_t surface(PageSurface surface);
 
     /// Names the image that a texture was made of. Its file is stored if browsers decode it to the
@@ -65,6 +67,7 @@ class PageContent {
     PageDescription description;
 
   private:
+    PageStage stage(const ShaderSource& source, const ShaderTexts& texts);
     std::size_t map(GLuint texture);
     std::size_t cube();
     PageSampler sampler(GLint unit, GLenum target) const;

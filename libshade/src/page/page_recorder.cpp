@@ -68,19 +68,15 @@ ShaderTexts texts_of(const PreparedScene& renderer) {
     return renderer.shaders ? *renderer.shaders : ShaderTexts();
 }
 
-PageProgram page_program(const SurfaceProgram& source) {
-    return {source.vertex.text, source.fragment.text};
+SurfaceProgram surface_page_program(const PreparedScene& of, const Features& features,
+                                    bool shows_samples) {
+    return surface_program_with(features, GlslVersion::es_300,
+                                shows_samples ? replace_output : nullptr, texts_of(of));
 }
 
-PageProgram surface_page_program(const PreparedScene& of, const Features& features,
-                                 bool shows_samples) {
-    return page_program(surface_program_with(
-        features, GlslVersion::es_300, shows_samples ? replace_output : nullptr, texts_of(of)));
-}
-
-PageProgram screen_program(const PreparedScene& of, std::string_view name,
-                           const ShaderSteps& steps) {
-    return page_program(pass_program(name, steps, GlslVersion::es_300, texts_of(of)));
+SurfaceProgram screen_program(const PreparedScene& of, std::string_view name,
+                              const ShaderSteps& steps) {
+    return pass_program(name, steps, GlslVersion::es_300, texts_of(of));
 }
 
 std::vector<float> floats_of(const glm::vec4& v) {
@@ -180,12 +176,13 @@ PageDraw PageRecorder::Implementation::record(const PreparedScene& renderer, con
     result.pass = is_blended(draw)    ? PagePass::blended
                   : is_covering(draw) ? PagePass::covering
                                       : PagePass::transmissive;
-    result.program = content.program(surface_page_program(renderer, f, shows_samples));
+    result.program =
+        content.program(surface_page_program(renderer, f, shows_samples), texts_of(renderer));
     if (renderer.plan.shadow_maps && draw.surface->casts_shadow) {
         Features depth_only = f;
         depth_only.view = DebugView::overdraw;
-        result.shadow_program =
-            content.program(surface_page_program(renderer, canonical(depth_only), false));
+        result.shadow_program = content.program(
+            surface_page_program(renderer, canonical(depth_only), false), texts_of(renderer));
     }
     result.instance = draw.instance;
     result.first_triangle = draw.range.first_triangle;
@@ -223,7 +220,7 @@ std::optional<PageScreenPass> PageRecorder::Implementation::skybox(const Scene& 
     const auto linked = of.linked.get("skybox", steps);
     if (shows_samples) replace_output(steps);
     PageScreenPass pass;
-    pass.program = content.program(screen_program(of, "skybox", steps));
+    pass.program = content.program(screen_program(of, "skybox", steps), texts_of(of));
     const glm::vec2 turn =
         scene.environment ? environment_turn(*scene.environment) : glm::vec2(1.0F, 0.0F);
     pass.surface.values = {
@@ -246,7 +243,7 @@ PageScreenPass PageRecorder::Implementation::finishing(const Scene& scene, const
     if (shows_samples) steps = {{"output", "output.glsl#codes"}};
     choose_part(steps, "picture.glsl#one_sample");
     PageScreenPass pass;
-    pass.program = content.program(screen_program(of, "picture", steps));
+    pass.program = content.program(screen_program(of, "picture", steps), texts_of(of));
     const glm::vec4 background = shown_background(scene.background, settings.output);
     pass.surface.values = {
         {"background", floats_of({glm::vec3(background) * background.a, background.a})},

@@ -88,7 +88,7 @@ def read_png(file):
 
 # Mesa's rasterizer, with which the command line draws here, decodes sRGB texels by a cubic
 # polynomial (lp_build_srgb_to_linear), which is up to 0.4 % too bright: 0.2 of an 8-bit code on
-# average, of which FLIP sees up to 0.015. These lines of the runtime are replaced by ones that
+# average, of which FLIP sees up to 0.015. These lines of the runtime, as pages have it, are replaced by ones that
 # decode as it does, so that all other differences show.
 DECODING = """
 const mesaLight = (c) => (c <= 10.3 ? c / 3294.6 : 0.0023 + 0.003 * c / 255 + 0.6935 * (c / 255) ** 2 + 0.3012 * (c / 255) ** 3);
@@ -96,12 +96,12 @@ const mesaLights = Float32Array.from({length: 256}, (_, c) => mesaLight(c));
 const mesaLinear = (codes, channels) => Float32Array.from(codes, (c, i) => (i % channels === 3 ? c / 255 : mesaLights[c]));
 """
 REPLACED = [
-    ("class Gpu {", DECODING + "class Gpu {"),
-    ("gl.texImage2D(at, level, gl.SRGB8_ALPHA8, side, side, 0, gl.RGBA, gl.UNSIGNED_BYTE, withAlpha(part));",
+    ("class Gpu{", DECODING + "class Gpu{"),
+    ("gl.texImage2D(at,level,gl.SRGB8_ALPHA8,side,side,0,gl.RGBA,gl.UNSIGNED_BYTE,withAlpha(part));",
      "gl.texImage2D(at, level, gl.RGBA16F, side, side, 0, gl.RGBA, gl.FLOAT, mesaLinear(withAlpha(part), 4));"),
-    ("gl.texImage2D(target, level++, format, width,",
+    ("gl.texImage2D(target,level++,format,width,",
      "if (isByte && texture.srgb) gl.texImage2D(target, level++, gl.RGBA16F, width, height, 0, gl.RGBA, gl.FLOAT, "
-     "mesaLinear(samples, 4)); else gl.texImage2D(target, level++, format, width,"),
+     "mesaLinear(samples, 4)); else gl.texImage2D(target,level++,format,width,"),
 ]
 
 

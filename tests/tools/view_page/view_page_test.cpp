@@ -36,6 +36,14 @@ TEST(PageScript, HasNoCommentsAndKeepsItsCode) {
     EXPECT_EQ(without_comments("/* One.\n   Two. */\nbody { }\n"), "body { }\n");
 }
 
+TEST(PageScript, LosesOnlySpacesForReaders) {
+    EXPECT_EQ(without_spaces("const {a} = b ? c : 'd, e';\nreturn a + +b;\n"),
+              "const{a}=b?c:'d, e';\nreturn a + +b;\n");
+    EXPECT_EQ(without_spaces("f(`a, ${b ? `, ${ {c : 1} }` : \"x ; y\"} , z`, /[ /]= , \\/ /);\n"),
+              "f(`a, ${b?`, ${{c:1}}`:\"x ; y\"} , z`,/[ /]= , \\/ /);\n");
+    EXPECT_EQ(without_spaces("x = a / b; y = c / d;\n"), "x=a / b;y=c / d;\n");
+}
+
 TEST(PageScript, IsSmall) {
     const std::string script = page_script();
     EXPECT_LT(script.size(), 60'000U);
@@ -107,7 +115,8 @@ TEST(ViewPage, IsTheSameForAnyNumberOfThreads) {
 TEST(ViewPage, RefusesWhatAPageDoesNotHave) {
     const Workplace workplace;
     const std::string page = "relief-view data/vase.obj --output out/p.html ";
-    for (const char* option : {"--turntable 4", "--wireframe", "--grid", "--benchmark 3", "--steps",
+    for (const char* option : {"--turntable 4", "--wireframe", "--grid", "--benchmark 3",
+                               "--compare map=none --difference-map out/d.png",
                                "--reference data/bricks-diffuse.png"}) {
         const ProgramResult result = workplace.run(page + option);
         EXPECT_EQ(result.exit_code, 2) << option;
@@ -121,6 +130,16 @@ TEST(ViewPage, RefusesWhatAPageDoesNotHave) {
         workplace.run("relief-view data/vase.obj --output out/p.png --page-views diffuse");
     EXPECT_EQ(alone.exit_code, 2);
     EXPECT_THAT(alone.error, HasSubstr("--page-views: there is no page"));
+    for (const char* option : {"--output out/p.png", "--show diffuse --output out/p.html",
+                               "--compare map=none --output out/p.html"}) {
+        const ProgramResult probes =
+            workplace.run(std::string("relief-view data/vase.obj --page-probes 4x4 ") + option);
+        EXPECT_EQ(probes.exit_code, 2) << option;
+        EXPECT_THAT(probes.error, HasSubstr("--page-probes: ")) << option;
+    }
+    const ProgramResult many = workplace.run(page + "--page-probes 65x64");
+    EXPECT_EQ(many.exit_code, 2);
+    EXPECT_THAT(many.error, HasSubstr("a page explains at most 4096 pixels"));
     const ProgramResult unknown = workplace.run(page + "--page-views diffuse,normal");
     EXPECT_EQ(unknown.exit_code, 2);
     EXPECT_THAT(unknown.error, HasSubstr("there is no view 'normal'"));

@@ -70,6 +70,27 @@ VARIANTS = {
     "bufferViews": [{"buffer": 0, "byteLength": 36}],
     "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + base64.b64encode(
         struct.pack("<9f", -4, -4, 0, 4, -4, 0, 0, 4, 0)).decode()}]}
+# A triangle whose color and emission change: black at the beginning, which needs no emission then.
+MOVING_MATERIAL = {
+    "asset": {"version": "2.0"},
+    "extensionsUsed": ["KHR_animation_pointer"],
+    "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+    "materials": [{"pbrMetallicRoughness": {"metallicFactor": 0}, "emissiveFactor": [0, 0, 0]}],
+    "animations": [{
+        "samplers": [{"input": 1, "output": 2}, {"input": 1, "output": 3, "interpolation": "STEP"}],
+        "channels": [{"sampler": i, "target": {"path": "pointer", "extensions": {"KHR_animation_pointer": {
+            "pointer": f"/materials/0/{name}"}}}}
+            for i, name in enumerate(("emissiveFactor", "pbrMetallicRoughness/baseColorFactor"))]}],
+    "accessors": [
+        {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-4, -4, 0], "max": [4, 4, 0]},
+        {"bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 3, "type": "SCALAR", "min": [0], "max": [2]},
+        {"bufferView": 0, "byteOffset": 48, "componentType": 5126, "count": 3, "type": "VEC3"},
+        {"bufferView": 0, "byteOffset": 84, "componentType": 5126, "count": 3, "type": "VEC4"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 132}],
+    "buffers": [{"byteLength": 132, "uri": "data:application/octet-stream;base64," + base64.b64encode(struct.pack(
+        "<33f", -4, -4, 0, 4, -4, 0, 0, 4, 0, 0, 1, 2, 0, 0, 0, 0.5, 0, 0.25, 0, 0.75, 0,
+        1, 1, 1, 1, 0.2, 0.4, 0.6, 1, 0.1, 0.1, 0.1, 1)).decode()}]}
 MOVING = ["Fox", "CesiumMan", "InterpolationTest", "AnimatedMorphCube", "BoxAnimated", "AnimatedMorphSphere"]
 
 
@@ -194,6 +215,21 @@ class ViewPage(unittest.TestCase):
                                    "--max-difference", 255)
         self.assertLess(result["comparison"]["flip_mean"], MAX_FLIP)
 
+    def test_moves_materials_as_the_renderer_does(self):
+        file = self.scene("moving.gltf", MOVING_MATERIAL)
+        self.page("materials.html", file, "--samples", "1", "--camera", "0,0", "--size", "96x72")
+        middle = slice(4 * (96 * 40 + 48), 4 * (96 * 40 + 48) + 4)
+        colors = set()
+        for seconds in (0, 0.3, 0.5, 0.99, 1, 1.7):
+            self.run_in("page.moveTo(arguments[0])", seconds)
+            drawn = self.pixels()[middle]
+            pages.relief_view(TOOL, file, "--samples", "1", "--camera", "0,0", "--size", "96x72", "--time", seconds,
+                              "--output", self.work / "then.png")
+            expected = pages.read_png(self.work / "then.png")[middle]
+            self.assertLessEqual(max(abs(a - b) for a, b in zip(drawn, expected)), 1, (seconds, drawn, expected))
+            colors.add(drawn)
+        self.assertEqual(len(colors), 6)
+
     def test_deforms_as_the_renderer_does(self):
         for name in MOVING if SHARED else []:
             file = self.page("moving.html", model(name), "--time", "0.5", "--shadow", "2", "--size",
@@ -215,6 +251,133 @@ class ViewPage(unittest.TestCase):
         self.run_in("const list = page.part('view'); list.value = 'diffuse'; list.dispatchEvent(new Event('change'))")
         self.assertNotEqual(self.pixels(), first)
 
+    def split_at(self, share):
+        self.run_in("page.split.move(arguments[0])", share)
+        return self.pixels(*SIZE)
+
+    def test_splits_two_pictures(self):
+        bricks = ["data/vase.obj", "--height-map", "data/bricks-height.png", "--strength", "20", "--size", "{}x{}".format(*SIZE)]
+        self.page("split.html", *bricks, "--kernel", "scharr3", "--compare", "kernel=central5", "--split", "0.25")
+        self.assertEqual(self.run_in("return [page.split.at, page.part('split').hidden, page.part('split').textContent]"),
+                         [0.25, False, "vase.objkernel=central5"])
+        both, left, right = self.pixels(*SIZE), self.split_at(1), self.split_at(0)
+        self.assertNotEqual(left, right)
+        width, height = SIZE
+        for y in range(height):
+            row, line = slice(4 * width * y, 4 * width * (y + 1)), 4 * width // 4
+            self.assertEqual(both[row], left[row][:line] + right[row][line:])
+        for kernel, drawn in (("scharr3", left), ("central5", right)):
+            pages.write_png(self.work / "side.png", drawn, *SIZE)
+            result = pages.relief_view(TOOL, *bricks, "--kernel", kernel, "--reference", self.work / "side.png",
+                                       "--max-difference", 255)
+            self.assertLess(result["comparison"]["flip_mean"], MAX_FLIP, kernel)
+        self.run_in("page.part('split').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowRight'}))")
+        self.assertAlmostEqual(self.run_in("return page.split.at"), 0.02)
+        # Both sides of a comparison with the file itself are the same, also when it moves.
+        for scene in ("data/scenes/illumination.json", "data/scenes/environment-mapping.json", "data/vase.obj"):
+            self.page("same.html", scene, "--compare-to", scene, "--size", "{}x{}".format(*SIZE))
+            self.run_in("page.scene.duration > 0 && page.moveTo(0.7); page.orbit(0.3, 0.1)")
+            self.assertEqual(self.split_at(0), self.split_at(1), scene)
+
+    def test_shows_steps(self):
+        scene = ["data/scenes/environment-mapping.json", "--size", "{}x{}".format(*SIZE)]
+        result = pages.relief_view(TOOL, *scene, "--steps", "--output", self.work / "step-#.png")
+        file = self.page("steps.html", *scene, "--steps")
+        pages.with_mesas_decoding(file)
+        pages.open_page(self.window, file)
+        names = [step["name"] for step in result["steps"]]
+        self.assertEqual(self.run_in("return page.page.steps.map((s) => s.name)"), names)
+        self.assertGreater(len(names), 2)
+        before = None
+        for i, name in enumerate(names):
+            self.run_in("const list = page.part('step'); list.value = arguments[0] + 1; list.dispatchEvent(new Event('input'))", i)
+            self.assertTrue(self.run_in("return page.part('what').textContent").startswith(name))
+            first = self.run_in("return page.part('address').value")
+            self.assertIn(first, result["steps"][i]["parts"] or [first])
+            drawn = self.pixels(*SIZE)
+            self.assertNotEqual(drawn, before)
+            before = drawn
+            picture = pages.read_png(sorted(self.work.glob("step-*.png"))[i])
+            share = sum(max(abs(drawn[k + c] - picture[k + c]) for c in range(4)) > 2 for k in range(0, len(drawn), 4))
+            self.assertLess(share / (SIZE[0] * SIZE[1]), MAX_SHARE, name)
+
+    def test_edits_shaders(self):
+        self.page("edit.html", "data/vase.obj")
+        first = self.pixels()
+        self.run_in("page.part('shader').open = true")
+        self.assertIn("phong.glsl#lambert", self.run_in("return [...page.part('address').options].map((o) => o.value)"))
+        self.run_in("const list = page.part('address'); list.value = 'phong.glsl#lambert'; list.dispatchEvent(new Event('change'))")
+        original = self.run_in("return page.editor.code.value")
+        self.assertIn("return diffuse_color * n_dot_l;", original)
+        edit = ("page.editor.code.value = arguments[0]; page.editor.code.dispatchEvent(new Event('input'))")
+        marks = "return page.part('marks').textContent"
+        # It applies by itself when typing pauses.
+        self.run_in(edit, original.replace("* n_dot_l;", "* n_dot_l * 0.25;"))
+        self.assertEqual(self.pixels(), first)
+        self.window.wait_for(f"return {pages.ROOT}.relief.data.parts['phong.glsl#lambert'].includes('0.25')")
+        self.assertEqual(self.run_in(marks), "")
+        darker = self.pixels()
+        self.assertLess(sum(darker), sum(first))
+        # An error stands at its line, and the picture stays.
+        wrong = original.replace("return diffuse_color", "return diffuse_colour")
+        self.run_in(edit, wrong)
+        self.window.wait_for(f"{marks.replace('page.', pages.ROOT + '.relief.')} !== ''")
+        message = self.run_in(marks).split("\n")
+        line = next(i for i, text in enumerate(wrong.split("\n")) if "diffuse_colour" in text)
+        self.assertEqual(len(message), line + 1)
+        self.assertIn("'diffuse_colour' : undeclared identifier", message[line])
+        self.assertEqual(self.pixels(), darker)
+        # The difference to the original, and back.
+        self.run_in("page.part('difference').click()")
+        shown = self.run_in("return page.editor.code.value").split("\n")
+        self.assertEqual([text[:1] for text in shown if "diffuse_colo" in text and "return" in text], ["-", "+"])
+        self.run_in("page.part('difference').click(); page.part('undo').click()")
+        self.assertEqual(self.run_in("return page.editor.code.value"), original)
+        self.assertEqual(self.run_in(marks), "")
+        self.assertEqual(self.pixels(), first)
+        # What is saved replaces the part on the command line.
+        self.run_in(edit, original.replace("* n_dot_l;", "* n_dot_l * 0.25;"))
+        self.run_in("page.editor.apply(); window.saved = ''; const make = URL.createObjectURL;"
+                    "URL.createObjectURL = (blob) => { blob.text().then((text) => window.saved = text); return make(blob); };"
+                    "HTMLAnchorElement.prototype.click = function() { window.file = this.download; }; page.part('save').click()")
+        self.window.wait_for("return window.saved")
+        (self.work / "shaders").mkdir()
+        (self.work / "shaders" / self.window.run("return window.file")).write_text(self.window.run("return window.saved"))
+        os.environ["RELIEF_SHADER_DIR"] = str(self.work / "shaders")
+        try:
+            self.page("saved.html", "data/vase.obj")
+        finally:
+            del os.environ["RELIEF_SHADER_DIR"]
+        self.assertEqual(self.pixels(), darker)
+
+    def test_explains_pixels(self):
+        for scene in ("data/vase.obj --height-map data/bricks-height.png", "data/vase.obj --material gold",
+                      "data/scenes/illumination.json"):
+            self.page("probes.html", *scene.split(), "--samples", "1", "--size", "{}x{}".format(*SIZE), "--page-probes", "8x6")
+            probes = self.run_in("return page.page.probes")
+            self.assertGreater(len(probes), 5)
+            drawn = self.pixels(*SIZE)
+            for probe in probes:
+                for k in range(3):
+                    total = sum(value[k] for _, value in probe["terms"])
+                    self.assertAlmostEqual(total, probe["radiance"][k], delta=1e-9)
+                at = 4 * (SIZE[0] * probe["y"] + probe["x"])
+                # The reference does not average textures, and says so.
+                is_edge = "rounding may decide this pixel, or a texture is averaged" in probe["text"]
+                self.assertEqual(is_edge, "--height-map" in scene)
+                if not is_edge:
+                    self.assertLessEqual(max(abs(drawn[at + k] - probe["codes"][k]) for k in range(4)), 1)
+        self.assertFalse(self.run_in("return page.part('explain').hidden"))
+        self.run_in("page.part('explain').click()")
+        text = self.run_in("return page.part('probe').textContent")
+        self.assertRegex(text, r"(?s)terms.*diffuse, .* = .*sum: .*this page\n  one sample: codes \d+ \d+ \d+")
+        self.window.wait_for(f"return {pages.ROOT}.relief.part('arrows').children.length > 5")
+        labels = self.run_in("return [...page.part('arrows').querySelectorAll('text')].map((t) => t.textContent)")
+        self.assertTrue({"n", "v", "l1", "h1", "r1"} <= set(labels), labels)
+        # A click chooses the point below the pointer.
+        last = self.run_in("const p = page.probes.probes.at(-1); page.probes.pick(...page.probes.place(p.at)); return page.probes.chosen === p")
+        self.assertTrue(last)
+
     def test_quantizes_vertices(self):
         difference = pages.compared(TOOL, self.window, ["data/vase.obj"], self.work / "case", *SIZE,
                                     page_options=["--page-quantize"])
@@ -225,10 +388,14 @@ class ViewPage(unittest.TestCase):
         self.window.resize(390, 844, is_phone=True)
         self.assertEqual(self.window.run("return document.scrollingElement.scrollWidth"), 390)
         self.assertEqual(self.window.run("return document.scrollingElement.scrollHeight"), 844)
-        outside = ("return [...page.root.querySelectorAll('canvas, button, input, select, summary')].filter((e) => e.offsetParent)"
+        outside = ("return [...page.root.querySelectorAll('canvas, button, input, select, summary')].filter((e) => e.checkVisibility())"
                    ".map((e) => e.getBoundingClientRect()).filter((b) => b.left < 0 || b.right > 390 || b.bottom > 844).length")
         self.assertEqual(self.run_in(outside), 0)
         self.assertGreater(self.run_in("return page.canvas.getBoundingClientRect().height"), 500)
+        self.run_in("page.part('shader').open = true")
+        self.assertEqual(self.run_in(outside), 0)
+        self.assertEqual(self.window.run("return document.scrollingElement.scrollWidth"), 390)
+        self.assertGreater(self.run_in("return page.canvas.getBoundingClientRect().height"), 200)
         self.window.resize(1280, 900)
 
     def test_two_pages_at_once(self):

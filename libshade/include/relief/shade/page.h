@@ -77,10 +77,20 @@ struct PageLookup {
     friend auto operator<=>(const PageLookup&, const PageLookup&) = default;
 };
 
-/// GLSL ES 3.00.
+/// A shader in GLSL ES 3.00, to be assembled from PageDescription::parts: the head, then the main
+/// part, whose lines `//@include "ADDRESS"` and `//@include <STEP>` stand for other parts. Each
+/// part enters once. A global variable `TYPE NAME = VALUE;` gets its value where main() begins.
+struct PageStage {
+    std::string head;                          ///< The version, the precision and constants.
+    std::string main;                          ///< The address of the main part.
+    std::map<std::string, std::string> steps;  ///< The part of each step.
+
+    friend auto operator<=>(const PageStage&, const PageStage&) = default;
+};
+
 struct PageProgram {
-    std::string vertex;
-    std::string fragment;
+    PageStage vertex;
+    PageStage fragment;
 
     friend auto operator<=>(const PageProgram&, const PageProgram&) = default;
 };
@@ -161,6 +171,7 @@ struct PageDescription {
     std::vector<PageTexture> textures;
     std::vector<PageSampler> samplers;
     std::vector<PageProgram> programs;
+    std::map<std::string, std::string> parts;  ///< The parts of all programs, by address.
     std::vector<PageMesh> meshes;
     std::vector<PageSurface> surfaces;
     std::vector<PagePicture> pictures;

@@ -1,31 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes pages: the description and the scene as JSON, the sections behind it, and the runtime of
-// page/. The data is a zlib stream in base64.
-#include "page_writer.h"
+#include "page_scene.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstring>
-#include <limits>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <type_traits>
 #include <variant>
 
-#include "common/html.h"
-#include "common/text.h"
 #include "relief/mesh/mesh.h"
-#include "zlib_stream.h"
+#include "relief/shade/scene_graph.h"
 
 namespace relief::tools {
 using namespace relief::shade;
 
 namespace {
-
-// Numbers
 
 Json json_of(const glm::vec3& v) {
     return {v.x, v.y, v.z};
@@ -38,132 +22,6 @@ Json json_of(const glm::mat4& m) {
     }
     return numbers;
 }
-
-// Sections: those of the description, and those of the animations.
-
-class Sections {
-  public:
-    Sections(const PageDescription& page, const PageQuantization& codes) {
-        for (std::size_t i = 0; i < page.sections.size(); ++i) {
-            const auto quantized = codes.sections.find(i);
-            if (quantized == codes.sections.end()) {
-                add(page.sections[i]);
-            } else {
-                add(quantized->second.codes);
-            }
-        }
-    }
-
-    std::size_t add(std::span<const std::byte> bytes) {
-        places_.push_back({bytes_.size(), bytes.size()});
-        bytes_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-        bytes_.resize((bytes_.size() + 3) / 4 * 4);
-        return places_.size() - 1;
-    }
-    template <typename T>
-    std::size_t add(const std::vector<T>& values) {
-        return add(std::as_bytes(std::span(values)));
-    }
-
-    [[nodiscard]] Json places() const { return places_; }
-    [[nodiscard]] const std::string& bytes() const { return bytes_; }
-
-  private:
-    std::vector<std::array<std::size_t, 2>> places_;
-    std::string bytes_;
-};
-
-// The description
-
-Json json_of(const PageTexture& t) {
-    return {{"kind", enum_name(t.kind)},
-            {"t", enum_name(t.texels)},
-            {"srgb", t.is_srgb},
-            {"levels", t.has_levels},
-            {"maxima", t.has_maxima},
-            {"gray", t.is_gray},
-            {"c", t.channels},
-            {"w", t.width},
-            {"h", t.height},
-            {"d", t.section}};
-}
-
-Json json_of(const PageSampler& s) {
-    return {{"u", s.wrap_u},
-            {"v", s.wrap_v},
-            {"min", s.minify},
-            {"mag", s.magnify},
-            {"anisotropy", s.anisotropy}};
-}
-
-Json json_of(const PageMesh& mesh) {
-    Json streams = Json::array();
-    for (const PageStream& stream : mesh.streams)
-        streams.push_back(
-            {{"attribute", stream.attribute}, {"c", stream.components}, {"d", stream.section}});
-    return {{"streams", streams}, {"triangles", mesh.triangles}};
-}
-
-Json json_of(const PageSurface& surface) {
-    Json textures = Json::object();
-    for (const auto& [name, lookup] : surface.textures)
-        textures[name] = {lookup.texture, lookup.sampler};
-    return {{"values", surface.values}, {"textures", textures}};
-}
-
-Json json_of(const PageDraw& d) {
-    Json json = {{"pass", enum_name(d.pass)},
-                 {"program", d.program},
-                 {"mesh", d.mesh},
-                 {"surface", d.surface},
-                 {"instance", d.instance},
-                 {"first", d.first_triangle},
-                 {"count", d.triangle_count},
-                 {"bothSides", d.both_sides},
-                 {"lights",
-                  {{"directional", d.lights.directional},
-                   {"point", d.lights.point},
-                   {"spot", d.lights.spot},
-                   {"colors", d.lights.highlight_colors}}},
-                 {"rows", Json(d.rows)},
-                 {"jointPairs", d.joint_pairs},
-                 {"morphTexels", {d.morph_texels.x, d.morph_texels.y}}};
-    if (d.shadow_program) json["shadowProgram"] = *d.shadow_program;
-    if (d.rows.empty()) json["rows"] = Json::object();
-    return json;
-}
-
-Json json_of(const PageScreenPass& pass) {
-    Json json = json_of(pass.surface);
-    json["program"] = pass.program;
-    return json;
-}
-
-Json json_of(const PagePicture& p, const PagePictureName& name) {
-    Json draws = Json::array();
-    for (const PageDraw& draw : p.draws)
-        draws.push_back(json_of(draw));
-    return {{"view", name.view},
-            {"variant", name.variant},
-            {"draws", draws},
-            {"skybox", p.skybox ? json_of(*p.skybox) : Json()},
-            {"finishing", p.finishing ? json_of(*p.finishing) : Json()},
-            {"samples", p.samples},
-            {"shadowMaps", p.has_shadow_maps},
-            {"copiesBehind", p.copies_behind},
-            {"counts", p.counts_fragments},
-            {"clear", {p.clear_color.r, p.clear_color.g, p.clear_color.b, p.clear_color.a}}};
-}
-
-template <typename T>
-Json list_of(const std::vector<T>& values) {
-    Json list = Json::array();
-    for (const T& value : values)
-        list.push_back(json_of(value));
-    return list;
-}
-
-// The scene
 
 void add_carrier(Json& object, const Carried* carried) {
     if (carried == nullptr || !carried->node) return;
@@ -250,7 +108,7 @@ std::vector<float> values_of(const KeyChannel& channel, std::size_t components) 
     return values;
 }
 
-Json channel_json(const KeyChannel& channel, Sections& sections) {
+Json channel_json(const KeyChannel& channel, PageSections& sections) {
     const bool has_weights = channel.property == KeyChannel::Property::weights;
     const std::size_t keys =
         channel.times.size() * (channel.interpolation == KeyInterpolation::cubic_spline ? 3 : 1);
@@ -278,7 +136,7 @@ Json channel_json(const KeyChannel& channel, Sections& sections) {
     return json;
 }
 
-Json animation_json(const Animation& animation, Sections& sections) {
+Json animation_json(const Animation& animation, PageSections& sections) {
     if (const auto* keys = std::get_if<KeyAnimation>(&animation)) {
         Json channels = Json::array();
         for (const KeyChannel& channel : keys->channels) {
@@ -318,17 +176,17 @@ Json deformed_json(const DeformedInstance& deformed) {
             {"fromMesh", matrices}};
 }
 
-Json camera_json(const ComposedScene& composed) {
-    const Camera& camera = composed.camera;
+Json camera_json(const PageScene& page) {
+    const Camera& camera = page.camera;
     Json json = {
         {"matrix", json_of(camera.world_from_view)},
         {"fov", camera.vertical_fov},
         {"near", camera.near},
         {"far", camera.far},
         {"height", camera.orthographic_height ? Json(*camera.orthographic_height) : Json()}};
-    if (composed.camera_follows_scene) {
-        add_carrier(json, &composed.graph.camera);
-        if (composed.graph.camera_sees_all) json["seesAll"] = true;
+    if (page.camera_follows_scene) {
+        add_carrier(json, &page.graph->camera);
+        if (page.graph->camera_sees_all) json["seesAll"] = true;
     }
     return json;
 }
@@ -344,8 +202,17 @@ std::vector<double> clip_durations(const SceneGraph& graph) {
     return durations;
 }
 
-Json scene_json(const ComposedScene& composed, double seconds, Sections& sections) {
-    const SceneGraph& graph = composed.graph;
+}  // namespace
+
+std::size_t PageSections::add(std::span<const std::byte> bytes) {
+    places_.push_back({bytes_.size(), bytes.size()});
+    bytes_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    bytes_.resize((bytes_.size() + 3) / 4 * 4);
+    return places_.size() - 1;
+}
+
+Json page_scene_json(const PageScene& page, double seconds, PageSections& sections) {
+    const SceneGraph& graph = *page.graph;
     const Scene& scene = graph.scene;
     Json instances = Json::array();
     for (std::size_t i = 0; i < scene.instances.size(); ++i)
@@ -372,7 +239,7 @@ Json scene_json(const ComposedScene& composed, double seconds, Sections& section
             {"chosenCamera", graph.chosen_camera},
             {"center", json_of(center)},
             {"radius", box.empty() ? 1.0F : 0.5F * glm::distance(box.min, box.max)},
-            {"camera", camera_json(composed)},
+            {"camera", camera_json(page)},
             {"shadow", scene.shadow ? Json(scene.shadow->size) : Json()},
             {"instances", instances},
             {"lights",
@@ -382,92 +249,6 @@ Json scene_json(const ComposedScene& composed, double seconds, Sections& section
             {"nodes", nodes},
             {"animations", animations},
             {"deformed", deformed}};
-}
-
-std::string_view part(std::string_view name) {
-    for (const PagePart& each : page_parts()) {
-        if (each.name == name) return each.text;
-    }
-    return {};
-}
-
-std::string filled(std::string_view text, const std::map<std::string, std::string>& values) {
-    std::string result;
-    while (true) {
-        const std::size_t begin = text.find("{{");
-        result += text.substr(0, begin);
-        if (begin == std::string_view::npos) return result;
-        const std::size_t end = text.find("}}", begin);
-        result += values.at(std::string(text.substr(begin + 2, end - begin - 2)));
-        text.remove_prefix(end + 2);
-    }
-}
-
-}  // namespace
-
-std::string without_comments(std::string_view code) {
-    std::string result;
-    bool is_comment = false;
-    while (!code.empty()) {
-        const std::size_t end = std::min(code.find('\n'), code.size());
-        std::string_view line = code.substr(0, end);
-        code.remove_prefix(std::min(end + 1, code.size()));
-        line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
-        if (const std::size_t comment = line.find("  // "); comment != std::string_view::npos)
-            line = line.substr(0, comment);
-        is_comment |= line.starts_with("/*");
-        if (!is_comment && !line.empty() && !line.starts_with("//")) {
-            result += line;
-            result += '\n';
-        }
-        if (is_comment && line.ends_with("*/")) is_comment = false;
-    }
-    return result;
-}
-
-std::string page_script() {
-    std::string script;
-    for (const PagePart& each : page_parts()) {
-        if (each.name.ends_with(".js")) script += without_comments(each.text);
-    }
-    return "(() => {\n'use strict';\n" + script + "})();\n";
-}
-
-std::string page_html(const PageDescription& page, const ComposedScene& composed,
-                      const std::vector<PagePictureName>& names, const std::string& title,
-                      double seconds, double aspect, const PageQuantization& codes) {
-    Sections sections(page, codes);
-    Json programs = Json::array();
-    for (const PageProgram& program : page.programs)
-        programs.push_back({{"vertex", without_comments(program.vertex)},
-                            {"fragment", without_comments(program.fragment)}});
-    Json pictures = Json::array();
-    for (std::size_t i = 0; i < page.pictures.size(); ++i)
-        pictures.push_back(json_of(page.pictures[i], names.at(i)));
-    Json json = {{"scene", scene_json(composed, seconds, sections)},
-                 {"aspect", aspect},
-                 {"pictures", pictures},
-                 {"surfaces", list_of(page.surfaces)},
-                 {"meshes", list_of(page.meshes)},
-                 {"textures", list_of(page.textures)},
-                 {"samplers", list_of(page.samplers)},
-                 {"programs", programs}};
-    json["quantized"] = Json::object();
-    for (const auto& [section, quantized] : codes.sections)
-        json["quantized"][std::to_string(section)] = {{"min", quantized.min},
-                                                      {"max", quantized.max}};
-    json["sections"] = sections.places();
-    const std::string text = json.dump();
-    std::string bytes(4, '\0');
-    const auto length = static_cast<std::uint32_t>(text.size());
-    std::memcpy(bytes.data(), &length, sizeof(length));
-    bytes += text + sections.bytes();
-    const std::string stream =
-        relief::detail::zlib_stream(std::as_bytes(std::span(bytes.data(), bytes.size())));
-    return filled(part("page.html"), {{"title", html_escaped(title)},
-                                      {"style", without_comments(part("page.css"))},
-                                      {"script", page_script()},
-                                      {"data", base64(stream)}});
 }
 
 }  // namespace relief::tools

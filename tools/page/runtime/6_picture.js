@@ -10,8 +10,8 @@ class Painter {
     this.blank = this.gl.createTexture();
   }
 
-  // Draws into the canvas, which has this size.
-  draw(picture, camera, width, height) {
+  // Draws into these columns of the canvas, which has this size.
+  draw(picture, camera, width, height, [from, to] = [0, width]) {
     const {gl, scene} = this;
     if (this.version !== scene.version) {
       this.version = scene.version;
@@ -21,9 +21,14 @@ class Painter {
       this.shadowOf = null;
     }
     this.camera = camera;
+    this.picture = picture;
     this.toClip = clipFromWorld(camera, width / height);
     [width, height] = [Math.max(1, width), Math.max(1, height)];
     this.size = [width, height];
+    this.limit = () => {
+      gl.enable(gl.SCISSOR_TEST);
+      gl.scissor(from, 0, to - from, height);
+    };
     for (const [i, value] of [[1, [0, 0, 1, 0]], [2, [0, 0, 0, 0]], [5, [0, 0, 0, 0]], [3, [1, 0, 0, 1]], [4, [1, 1, 1, 1]]])
       gl.vertexAttrib4fv(i, value);
     gl.disable(gl.BLEND);
@@ -42,6 +47,7 @@ class Painter {
     this.issueBlended(picture);
     gl.disable(gl.BLEND);
     if (picture.finishing) this.finish(picture.finishing);
+    gl.disable(gl.SCISSOR_TEST);
     gl.bindVertexArray(null);
   }
 
@@ -49,6 +55,7 @@ class Painter {
     const {gl} = this, [width, height] = this.size;
     this.target = picture.finishing ? this.targets(picture.samples) : null;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target && this.target.drawn);
+    if (!this.target) this.limit();
     gl.viewport(0, 0, width, height);
     gl.clearColor(...(picture.counts ? [0, 0, 0, 1] : picture.clear));
     gl.clearDepth(1);
@@ -138,6 +145,7 @@ class Painter {
       gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
     }
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    this.limit();
     gl.viewport(0, 0, width, height);
     gl.disable(gl.DEPTH_TEST);
     gl.disable(gl.CULL_FACE);
@@ -183,12 +191,25 @@ class Painter {
     });
   }
 
+  // The uniforms of a surface; those that an animation moves, between the times that are recorded.
+  valuesOf(index) {
+    const {surfaces} = this.gpu.data.page, {scene} = this, {motion} = this.picture;
+    const moved = motion && motion.clip === scene.clip && motion.surfaces[index];
+    if (!moved) return surfaces[index].values;
+    const {times} = motion, next = times.findIndex((t) => t > scene.time);
+    if (next < 1) return surfaces[moved[next < 0 ? times.length - 1 : 0]].values;
+    const [from, to] = [next - 1, next].map((k) => surfaces[moved[k]].values), values = {};
+    const share = (scene.time - times[next - 1]) / (times[next] - times[next - 1]);
+    for (const name in from) values[name] = from[name].map((x, i) => x + share * ((to[name] || from[name])[i] - x));
+    return values;
+  }
+
   // Sets the uniforms and textures of a draw.
   use(draw, program, toClip, eye) {
     const {gl, gpu, scene} = this, surface = gpu.data.page.surfaces[draw.surface];
     const place = this.places[draw.instance];
     gl.useProgram(program.name);
-    this.setAll(program, surface.values);
+    this.setAll(program, this.valuesOf(draw.surface));
     this.setAll(program, place);
     program.set('clip_from_object', product(toClip, place.world_from_object));
     program.set('clip_from_world', toClip);

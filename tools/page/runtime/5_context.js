@@ -15,11 +15,21 @@ class Gpu {
     this.programs = [];
     this.meshes = [];
     this.samplers = [];
-    const {page} = data;
-    const used = new Set(page.pictures.flatMap((p) => [...p.draws.flatMap((d) => [d.program, d.shadowProgram]),
-        p.skybox && p.skybox.program, p.finishing && p.finishing.program]));
-    page.programs.forEach((p, i) => used.has(i) && (this.programs[i] = new Program(gl, p.vertex, p.fragment)));
-    for (const program of this.programs) if (program) program.finish();
+    this.link(data.parts);
+  }
+
+  // Links programs: all, or those that contain a part. If one fails, all stay as they are.
+  link(parts, changed) {
+    const {gl, data} = this, made = [];
+    data.page.programs.forEach((program, i) => {
+      const stages = [program.vertex, program.fragment].map((stage) => assembled(parts, stage));
+      if (!changed || stages.some((stage) => stage.parts.has(changed))) made[i] = new Program(gl, ...stages);
+    });
+    made.forEach((program) => program.finish());
+    made.forEach((program, i) => {
+      if (this.programs[i]) gl.deleteProgram(this.programs[i].name);
+      this.programs[i] = program;
+    });
   }
 
   // Decodes and uploads all textures.
@@ -144,8 +154,9 @@ class Program {
   constructor(gl, vertex, fragment) {
     this.gl = gl;
     this.name = gl.createProgram();
-    this.shaders = [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]].map(([kind, text]) => {
-      const shader = gl.createShader(kind);
+    this.stages = [vertex, fragment];
+    this.shaders = this.stages.map(({text}, i) => {
+      const shader = gl.createShader(i ? gl.FRAGMENT_SHADER : gl.VERTEX_SHADER);
       gl.shaderSource(shader, text);
       gl.compileShader(shader);
       gl.attachShader(this.name, shader);
@@ -157,8 +168,10 @@ class Program {
 
   finish() {
     const {gl, name} = this;
-    if (!gl.getProgramParameter(name, gl.LINK_STATUS) && !gl.isContextLost())
-      throw new Error([gl.getProgramInfoLog(name), ...this.shaders.map((s) => gl.getShaderInfoLog(s))].join('\n'));
+    if (!gl.getProgramParameter(name, gl.LINK_STATUS) && !gl.isContextLost()) {
+      const places = this.stages.flatMap((stage, i) => placesIn(gl.getShaderInfoLog(this.shaders[i]) || '', stage));
+      throw shaderError(places.length ? places : placesIn(gl.getProgramInfoLog(name), this.stages[1]));
+    }
     gl.useProgram(name);
     this.uniforms = {};
     this.samplers = [];

@@ -5,6 +5,7 @@ class Data {
   constructor(page, bytes) {
     this.page = page;
     this.bytes = bytes;
+    this.parts = {...page.parts};  // Of shaders, as they are edited.
   }
 
   section(i) {

@@ -3,9 +3,8 @@
 // morph weights, by the rules of libshade/src/scene/scene_graph.cpp.
 
 class Scene {
-  constructor(data) {
+  constructor(data, scene) {
     this.data = data;
-    const {scene} = data.page;
     Object.assign(this, scene);
     this.duration = scene.duration;
     this.time = scene.time;

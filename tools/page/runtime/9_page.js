@@ -23,9 +23,13 @@ class Page {
     const page = JSON.parse(new TextDecoder().decode(bytes.subarray(4, 4 + start)));
     this.data = new Data(page, bytes.slice(4 + start));
     this.page = page;
-    this.scene = new Scene(this.data);
+    this.scenes = page.scenes.map((scene) => new Scene(this.data, scene));
+    this.scene = this.scenes[0];
     this.camera = null;  // The viewer's own, once it was moved.
     this.picture = 0;
+    this.split = new SplitLine(this, page.split);
+    this.editor = new Editor(this);
+    this.probes = new Probes(this, page.probes);
     this.part('controls').hidden = false;
     this.fillControls();
     this.listen();
@@ -44,7 +48,8 @@ class Page {
     const gpu = new Gpu(gl, this.data);
     await gpu.load();
     if (gl.isContextLost()) return;
-    this.painter = new Painter(gpu, this.scene);
+    this.painters = this.scenes.map((scene) => new Painter(gpu, scene));
+    this.painter = this.painters[0];
     this.root.dataset.state = 'ready';
     this.change();
   }
@@ -68,15 +73,26 @@ class Page {
   }
 
   draw(width, height) {
-    const {canvas} = this;
+    const {canvas, page} = this;
     if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [Math.max(width, 1), Math.max(height, 1)];
-    this.painter.draw(this.page.pictures[this.picture], this.fitted(canvas.width / canvas.height), canvas.width, canvas.height);
+    const right = page.pictures.findIndex((picture) => picture.left === this.picture);
+    const line = right < 0 ? canvas.width : Math.round(this.split.at * canvas.width);
+    const paint = (i, columns) => {
+      const picture = page.pictures[i], scene = this.scenes[picture.scene || 0];
+      this.painters[picture.scene || 0].draw(picture, this.fitted(canvas.width / canvas.height, scene), canvas.width, canvas.height, columns);
+    };
+    paint(this.picture, [0, line]);
+    if (right >= 0) paint(right, [line, canvas.width]);
+    this.split.show(right >= 0);
+    this.probes.show();
   }
 
-  // The camera; in a picture that is narrower than that of the command line, it sees as much to the
-  // sides.
-  fitted(aspect) {
-    const camera = this.camera || this.scene.camera, more = this.page.aspect / aspect;
+  // The camera with the depths of a scene; in a picture that is narrower than that of the command
+  // line, it sees as much to the sides.
+  fitted(aspect, scene = this.scene) {
+    const more = this.page.size[0] / this.page.size[1] / aspect;
+    let camera = this.camera || this.scene.camera;
+    if (scene !== this.scene) camera = {...camera, ...(this.camera ? depths(camera, scene) : {near: scene.camera.near, far: scene.camera.far})};
     if (!(more > 1.001)) return camera;
     return {...camera, height: camera.height && camera.height * more, fov: 2 * Math.atan(more * Math.tan(camera.fov / 2))};
   }
@@ -92,7 +108,7 @@ class Page {
   }
 
   moveTo(seconds) {
-    this.scene.pose(seconds);
+    for (const scene of this.scenes) scene.pose(seconds);
     this.part('time').value = seconds;
     this.part('seconds').textContent = `${seconds.toFixed(2)} s`;
   }
@@ -113,13 +129,14 @@ class Page {
       list.addEventListener('change', () => (set(list.value), this.change()));
     };
     const first = page.pictures[0];
-    const show = (view, variant) => {
-      const found = page.pictures.findIndex((p) => p.view === view && p.variant === variant);
-      if (found >= 0) this.picture = found;
-    };
     const unique = (key) => [...new Set(page.pictures.map((p) => p[key]))];
-    choose('view', unique('view'), first.view, (value) => show(value, page.pictures[this.picture].variant));
-    choose('variant', unique('variant'), first.variant, (value) => show(page.pictures[this.picture].view, value));
+    choose('view', unique('view'), first.view, (view) => this.show({view}));
+    choose('variant', unique('variant'), first.variant, (variant) => this.show({variant}));
+    const {steps} = page, step = this.part('step');
+    step.closest('label').hidden = steps.length < 2;
+    step.max = step.value = steps.length;
+    step.addEventListener('input', () => this.show({step: step.value - 1}));
+    this.show({});
     const clips = ['all', ...scene.clips];
     choose('clip', scene.clips.length > 1 ? clips : [], scene.clip === null ? 'all' : scene.clips[scene.clip], (value) => {
       scene.clip = value === 'all' ? null : scene.clips.indexOf(value);
@@ -140,6 +157,19 @@ class Page {
     this.part('reset').addEventListener('click', () => this.reset());
   }
 
+  // Shows a picture with this view, variant or step, and else that of now.
+  show(change) {
+    const {page} = this, {view, variant} = {...page.pictures[this.picture], ...change}, {step} = change;
+    const fits = (p) => p.left === null && p.view === view && p.variant === variant;
+    const found = page.pictures.findIndex((p) => fits(p) && p.step === step);
+    this.picture = found >= 0 ? found : page.pictures.findIndex(fits);
+    const shown = page.steps[page.pictures[this.picture].step];
+    this.part('step').value = page.pictures[this.picture].step + 1;
+    this.part('what').textContent = shown ? `${shown.name}: ${shown.what}` : '';
+    this.editor.fill(shown ? shown.parts : []);
+    this.change();
+  }
+
   reset() {
     this.camera = null;
     this.change();
@@ -149,6 +179,7 @@ class Page {
   listen() {
     const {canvas} = this, {signal} = this.listeners, pointers = new Map();
     const on = (kind, action, options) => canvas.addEventListener(kind, action, {signal, ...options});
+    let moved = 0;
     const middleOf = () => times([...pointers.values()].reduce((a, b) => add(a, b), [0, 0]), 1 / pointers.size);
     const spread = () => {
       const [a, b] = [...pointers.values()];
@@ -156,6 +187,7 @@ class Page {
     };
     on('pointerdown', (event) => {
       canvas.setPointerCapture(event.pointerId);
+      if (!pointers.size) moved = 0;
       pointers.set(event.pointerId, [event.clientX, event.clientY]);
       canvas.focus({preventScroll: true});
     });
@@ -167,6 +199,7 @@ class Page {
       const before = middleOf(), gap = spread();
       pointers.set(event.pointerId, [event.clientX, event.clientY]);
       const [dx, dy] = add(middleOf(), before, -1);
+      moved += Math.abs(dx) + Math.abs(dy);
       if (pointers.size > 1) {
         this.pan(dx, dy);
         if (gap > 0 && spread() > 0) this.zoom(gap / spread());
@@ -182,6 +215,7 @@ class Page {
     }, {passive: false});
     on('contextmenu', (event) => event.preventDefault());
     on('dblclick', () => this.reset());
+    on('click', (event) => moved < 4 && this.probes.pick(event.offsetX, event.offsetY));
     on('keydown', (event) => {
       const step = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]}[event.key];
       if (step && event.shiftKey) this.pan(-20 * step[0], 20 * step[1]);
@@ -241,12 +275,15 @@ class Page {
 
   // Keeps the scene between the near and the far plane.
   enclose() {
-    const {camera} = this, {center, radius} = this.scene;
-    const distance = dot(add(column(camera.matrix, 3), center, -1), column(camera.matrix, 2));
-    camera.far = Math.max(distance + 1.01 * radius, 1e-3 * radius);
-    camera.near = Math.max(distance - 1.01 * radius, 1e-3 * camera.far);
+    Object.assign(this.camera, depths(this.camera, this.scene));
     this.change();
   }
+}
+
+function depths(camera, {center, radius}) {
+  const distance = dot(add(column(camera.matrix, 3), center, -1), column(camera.matrix, 2));
+  const far = Math.max(distance + 1.01 * radius, 1e-3 * radius);
+  return {near: Math.max(distance - 1.01 * radius, 1e-3 * far), far};
 }
 
 // The bytes of a zlib stream in base64.

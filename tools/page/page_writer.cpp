@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes pages: the description and the scene as JSON, the sections behind it, and the runtime of
+// runtime/. The data is a zlib stream in base64.
+#include "page_writer.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+
+#include "common/html.h"
+#include "common/text.h"
+#include "zlib_stream.h"
+
+namespace relief::tools {
+using namespace relief::shade;
+
+namespace {
+
+// The description
+
+Json json_of(const PageTexture& t) {
+    return {{"kind", enum_name(t.kind)},
+            {"t", enum_name(t.texels)},
+            {"srgb", t.is_srgb},
+            {"levels", t.has_levels},
+            {"maxima", t.has_maxima},
+            {"gray", t.is_gray},
+            {"gray", t.is_gray},
+            {"c", t.channels},
+            {"w", t.width},
+            {"h", t.height},
+            {"d", t.section}};
+}
+
+Json json_of(const PageSampler& s) {
+    return {{"u", s.wrap_u},
+            {"v", s.wrap_v},
+            {"min", s.minify},
+            {"mag", s.magnify},
+            {"anisotropy", s.anisotropy}};
+}
+
+Json json_of(const PageMesh& mesh) {
+    Json streams = Json::array();
+    for (const PageStream& stream : mesh.streams)
+        streams.push_back(
+            {{"attribute", stream.attribute}, {"c", stream.components}, {"d", stream.section}});
+    return {{"streams", streams}, {"triangles", mesh.triangles}};
+}
+
+Json json_of(const PageSurface& surface) {
+    Json textures = Json::object();
+    for (const auto& [name, lookup] : surface.textures)
+        textures[name] = {lookup.texture, lookup.sampler};
+    return {{"values", surface.values}, {"textures", textures}};
+}
+
+Json json_of(const PageDraw& d) {
+    Json json = {{"pass", enum_name(d.pass)},
+                 {"program", d.program},
+                 {"mesh", d.mesh},
+                 {"surface", d.surface},
+                 {"instance", d.instance},
+                 {"first", d.first_triangle},
+                 {"count", d.triangle_count},
+                 {"bothSides", d.both_sides},
+                 {"lights",
+                  {{"directional", d.lights.directional},
+                   {"point", d.lights.point},
+                   {"spot", d.lights.spot},
+                   {"colors", d.lights.highlight_colors}}},
+                 {"rows", Json(d.rows)},
+                 {"jointPairs", d.joint_pairs},
+                 {"morphTexels", {d.morph_texels.x, d.morph_texels.y}}};
+    if (d.shadow_program) json["shadowProgram"] = *d.shadow_program;
+    if (d.rows.empty()) json["rows"] = Json::object();
+    return json;
+}
+
+Json json_of(const PageScreenPass& pass) {
+    Json json = json_of(pass.surface);
+    json["program"] = pass.program;
+    return json;
+}
+
+Json json_of(const PagePicture& p, const PagePictureName& name) {
+    Json draws = Json::array();
+    for (const PageDraw& draw : p.draws)
+        draws.push_back(json_of(draw));
+    return {{"view", name.view},
+            {"variant", name.variant},
+            {"step", or_null(name.step)},
+            {"left", or_null(name.left)},
+            {"scene", name.scene},
+            {"draws", draws},
+            {"skybox", p.skybox ? json_of(*p.skybox) : Json()},
+            {"finishing", p.finishing ? json_of(*p.finishing) : Json()},
+            {"samples", p.samples},
+            {"shadowMaps", p.has_shadow_maps},
+            {"copiesBehind", p.copies_behind},
+            {"counts", p.counts_fragments},
+            {"clear", {p.clear_color.r, p.clear_color.g, p.clear_color.b, p.clear_color.a}}};
+}
+
+Json json_of(const PageStage& stage) {
+    return {{"head", stage.head}, {"main", stage.main}, {"steps", Json(stage.steps)}};
+}
+
+Json json_of(const PageProgram& program) {
+    return {{"vertex", json_of(program.vertex)}, {"fragment", json_of(program.fragment)}};
+}
+
+Json json_of(const PictureStep& step) {
+    return {{"name", step.name}, {"what", step.what}, {"parts", step.parts}};
+}
+
+Json json_of(const PageSplit& split) {
+    return {{"at", split.position}, {"left", split.left}, {"right", split.right}};
+}
+
+template <typename T>
+Json list_of(const std::vector<T>& values) {
+    Json list = Json::array();
+    for (const T& value : values)
+        list.push_back(json_of(value));
+    return list;
+}
+
+/// The surfaces of the first picture at the times: {"clip", "times", "surfaces": {surface:
+/// [surface of each time]}}.
+Json motion_json(const PageDescription& page, const PageSettings& settings) {
+    Json surfaces = Json::object();
+    const std::vector<PageDraw>& draws = page.pictures.front().draws;
+    for (std::size_t i = 0; i < draws.size(); ++i) {
+        std::vector<std::size_t> moved;
+        for (std::size_t k = settings.names.size(); k < page.pictures.size(); ++k) {
+            const std::vector<PageDraw>& then = page.pictures[k].draws;
+            if (then.size() == draws.size()) moved.push_back(then[i].surface);
+        }
+        const std::size_t surface = draws[i].surface;
+        const bool moves = std::any_of(moved.begin(), moved.end(),
+                                       [&](std::size_t each) { return each != surface; });
+        if (moves && moved.size() == settings.motion_times.size())
+            surfaces[std::to_string(surface)] = moved;
+    }
+    const SceneGraph& graph = *settings.scenes.front().graph;
+    return {{"clip", graph.clip ? Json(*graph.clip) : Json()},
+            {"times", settings.motion_times},
+            {"surfaces", surfaces}};
+}
+
+std::string_view part(std::string_view name) {
+    for (const PagePart& each : page_parts()) {
+        if (each.name == name) return each.text;
+    }
+    return {};
+}
+
+std::string filled(std::string_view text, const std::map<std::string, std::string>& values) {
+    std::string result;
+    while (true) {
+        const std::size_t begin = text.find("{{");
+        result += text.substr(0, begin);
+        if (begin == std::string_view::npos) return result;
+        const std::size_t end = text.find("}}", begin);
+        result += values.at(std::string(text.substr(begin + 2, end - begin - 2)));
+        text.remove_prefix(end + 2);
+    }
+}
+
+}  // namespace
+
+std::string without_comments(std::string_view code) {
+    std::string result;
+    bool is_comment = false;
+    while (!code.empty()) {
+        const std::size_t end = std::min(code.find('\n'), code.size());
+        std::string_view line = code.substr(0, end);
+        code.remove_prefix(std::min(end + 1, code.size()));
+        line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+        if (const std::size_t comment = line.find("  // "); comment != std::string_view::npos)
+            line = line.substr(0, comment);
+        is_comment |= line.starts_with("/*");
+        if (!is_comment && !line.empty() && !line.starts_with("//")) {
+            result += line;
+            result += '\n';
+        }
+        if (is_comment && line.ends_with("*/")) is_comment = false;
+    }
+    return result;
+}
+
+std::string without_spaces(std::string_view script) {
+    static constexpr std::string_view separators = "=,;:{}()[]<>?&|*!\n";
+    // A slash after one of these begins a regular expression.
+    static constexpr std::string_view before_pattern = "=,;:{}([?&|!\n";
+    const auto is_one_of = [](std::string_view set, char c) {
+        return set.find(c) != std::string_view::npos;
+    };
+    std::string result = "\n";
+    char quote = 0;  // The end of the text or regular expression that is open.
+    bool is_class = false;
+    std::vector<int> braces;  // Open braces in each `${...}`.
+    for (std::size_t i = 0; i < script.size(); ++i) {
+        const char c = script[i];
+        const char next = i + 1 < script.size() ? script[i + 1] : '\n';
+        if (quote != 0) {
+            result += c;
+            if (c == '\\') {
+                result += script[++i];
+            } else if (quote == '`' && c == '$' && next == '{') {
+                result += script[++i];
+                braces.push_back(0);
+                quote = 0;
+            } else if (quote == '/' && (c == '[' || c == ']')) {
+                is_class = c == '[';
+            } else if (c == quote && !is_class) {
+                quote = 0;
+            }
+            continue;
+        }
+        if (c == ' ' && (is_one_of(separators, result.back()) || is_one_of(separators, next)))
+            continue;
+        if (is_one_of("'\"`", c) || (c == '/' && is_one_of(before_pattern, result.back())))
+            quote = c;
+        if (!braces.empty()) {
+            braces.back() += (c == '{') - (c == '}');
+            if (braces.back() < 0) {
+                braces.pop_back();
+                quote = '`';
+            }
+        }
+        result += c;
+    }
+    return result.substr(1);
+}
+
+std::string page_script() {
+    std::string script;
+    for (const PagePart& each : page_parts()) {
+        if (each.name.ends_with(".js")) script += without_spaces(without_comments(each.text));
+    }
+    return "(() => {\n'use strict';\n" + script + "})();\n";
+}
+
+std::string page_html(const PageDescription& page, const PageSettings& settings,
+                      const PageQuantization& codes) {
+    PageSections sections;
+    for (std::size_t i = 0; i < page.sections.size(); ++i) {
+        const auto quantized = codes.sections.find(i);
+        if (quantized == codes.sections.end()) {
+            sections.add(page.sections[i]);
+        } else {
+            sections.add(quantized->second.codes);
+        }
+    }
+    Json pictures = Json::array();
+    for (std::size_t i = 0; i < settings.names.size(); ++i)
+        pictures.push_back(json_of(page.pictures.at(i), settings.names[i]));
+    if (!settings.motion_times.empty()) pictures.front()["motion"] = motion_json(page, settings);
+    Json scenes = Json::array();
+    for (const PageScene& scene : settings.scenes)
+        scenes.push_back(page_scene_json(scene, settings.seconds, sections));
+    Json json = {{"scenes", scenes},
+                 {"size", {settings.size.x, settings.size.y}},
+                 {"seconds", settings.seconds},
+                 {"probes", settings.probes},
+                 {"pictures", pictures},
+                 {"surfaces", list_of(page.surfaces)},
+                 {"meshes", list_of(page.meshes)},
+                 {"textures", list_of(page.textures)},
+                 {"samplers", list_of(page.samplers)},
+                 {"programs", list_of(page.programs)},
+                 {"parts", page.parts},
+                 {"steps", list_of(settings.steps)},
+                 {"split", settings.split ? json_of(*settings.split) : Json()}};
+    json["quantized"] = Json::object();
+    for (const auto& [section, quantized] : codes.sections)
+        json["quantized"][std::to_string(section)] = {{"min", quantized.min},
+                                                      {"max", quantized.max}};
+    json["sections"] = sections.places();
+    const std::string text = json.dump();
+    std::string bytes(4, '\0');
+    const auto length = static_cast<std::uint32_t>(text.size());
+    std::memcpy(bytes.data(), &length, sizeof(length));
+    bytes += text + sections.bytes();
+    const std::string stream =
+        relief::detail::zlib_stream(std::as_bytes(std::span(bytes.data(), bytes.size())));
+    return filled(part("page.html"), {{"title", html_escaped(settings.title)},
+                                      {"style", without_comments(part("page.css"))},
+                                      {"script", page_script()},
+                                      {"data", base64(stream)}});
+}
+
+}  // namespace relief::tools
