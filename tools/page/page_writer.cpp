@@ -25,7 +25,6 @@ Json json_of(const PageTexture& t) {
             {"levels", t.has_levels},
             {"maxima", t.has_maxima},
             {"gray", t.is_gray},
-            {"gray", t.is_gray},
             {"c", t.channels},
             {"w", t.width},
             {"h", t.height},
