@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "relief/accuracy/ground_truth.h"
+#include "relief/mesh/height_map.h"
+#include "relief/mesh/height_march.h"
 #include "relief/mesh/image_file.h"
 #include "relief/mesh/normal_map.h"
 #include "support/invariants.h"
@@ -288,6 +290,28 @@ TEST(BumpCommand, HalfFloatsAreSmallerAndHaveElevenBits) {
                 HasSubstr("slope moments, 32 bit float, dh/dy up, half floats\n"));
 }
 
+TEST(BumpCommand, ConeMapsHoldHeightsAndCones) {
+    const Workplace workplace;
+    workplace.write_bricks("bricks.png");
+    const ProgramResult run = workplace.run(
+        "relief-bake bump bricks.png out/n.png --wrap repeat --cone-map out/cones.png "
+        "--report out/report.json");
+    ASSERT_EQ(run.exit_code, 0) << run.error;
+    EXPECT_THAT(run.out, HasSubstr("out/cones.png: "));
+    EXPECT_THAT(workplace.read("out/report.json"), HasSubstr("\"cone_map\": \"out/cones.png\""));
+    const Image heights = read_image(workplace / "bricks.png", ImageUse::data);
+    const Image cones = read_image(workplace / "out/cones.png", ImageUse::data);
+    EXPECT_EQ(cones.samples,
+              relaxed_cones(HeightField(height_field(heights), Wrap::repeat), 16).samples);
+    // With the cones of another border mode, rays across the border may pass by a hit.
+    ASSERT_EQ(workplace
+                  .run("relief-bake bump bricks.png out/n.png --wrap clamp --cone-map "
+                       "out/clamped.tif")
+                  .exit_code,
+              0);
+    EXPECT_NE(read_image(workplace / "out/clamped.tif", ImageUse::data).samples, cones.samples);
+}
+
 TEST(BumpCommand, EveryCompressionEffortWritesTheSameImage) {
     const Workplace workplace;
     workplace.write_bricks("bricks.png");
@@ -433,6 +457,12 @@ TEST(BakeRefusal, ExplainsAndLeavesNoFiles) {
           "--bits 32: .png holds 16 or 8 bits"},
          {"relief-bake bump flat.png out/n.exr --slope-moments --xy", 2,
           "--xy, --slope-moments: contradict each other"},
+         {"relief-bake bump flat.png out/n.png --cone-map out/cones.jpg", 2,
+          "--cone-map out/cones.jpg: needs two channels of 16 bits or more (use .png, .tif or "
+          ".exr)"},
+         {"relief-bake bump flat.png out/n.png --cone-map out/n.png", 2, "--cone-map out/n.png: "},
+         {"relief-bake bump flat.png out/n.png --cone-map out/c.png --invert", 2,
+          "--invert, --cone-map: cones are those of the heights as they are read"},
          {"relief-bake bump flat.png flat.png", 2,
           "flat.png: would replace the height map (choose another output file or folder)"},
          {"relief-bake bump flat.png -o ./", 2, "./flat.png: would replace the height map"},

@@ -126,6 +126,12 @@ void add_content_options(CLI::App& app, BumpRequest& request) {
                "Content of the alpha channel: none, the height (for parallax mapping), or the "
                "alpha of the height map (keep). Default: none.")
         .group(group);
+    add_path(app, "--cone-map", request.cone_map,
+             "Also write a cone map for relief mapping with relaxed cones to FILE (.png, .tif or "
+             ".exr): the height, and in the second channel the root of the ratio of the cone's "
+             "radius to its height, both as fractions of the larger side of the map and of the "
+             "depth. It holds for every depth, and for the border mode of this conversion.")
+        .group(group);
     add_switch(app, "--slope-moments", request.slope_moments,
                "Instead of normals, write six float channels (.exr or .tif) that can be filtered "
                "(LEAN mapping): height, dh/dx, dh/dy, their squares and their product, with the "
@@ -175,8 +181,11 @@ ExitCode run(const CLI::App& app, const MapFiles& files, const BumpRequest& give
         bump_options_of(request);
         file_format_of(request, job.output);
         refuse_to_replace(job.input, "height map", job);
+        check_cone_map(request, job);
+        ++jobs;
+        if (jobs > 1 && request.cone_map) throw UsageError("--cone-map: needs a single map");
         if (!write_into.model) return;
-        if (++jobs > 1) throw UsageError("--write-into: needs a single map");
+        if (jobs > 1) throw UsageError("--write-into: needs a single map");
         check_write_into(request, write_into, job);
     };
     work.work = [&](const Job& job, Stages& stages) -> FileOutcome {
@@ -244,6 +253,8 @@ Command add_bump_command(CLI::App& tool) {
          "relief-bake bump data/bricks-height.png out/wall.png --height 0.02 --texel-size "
          "0.001",
          "relief-bake bump data/bricks-height.png out/bricks-parallax.png --alpha height",
+         "relief-bake bump data/bricks-height.png out/bricks-normal.png --cone-map "
+         "out/bricks-cones.png",
          "relief-bake bump data/*-height.png -o out/maps/ --strength 8"});
     return {&app, [&app, options] {
                 return run(app, options->files, options->request, options->write_into);

@@ -8,6 +8,10 @@
 #include <array>
 #include <cmath>
 
+#include "relief/mesh/height_march.h"
+#include "relief/mesh/image_file.h"
+#include "relief/mesh/map_description.h"
+
 namespace relief::tools {
 using namespace relief::accuracy;
 
@@ -287,7 +291,39 @@ void convert_and_write(const HeightMapFile& map, const Job& job, Stages& stages,
     conversion.findings.add("", report, map.info().width);
 }
 
+/// Writes the relaxed cones of the heights. The conversion has reported the holes of the map.
+void write_cone_map(const HeightMapFile& map, const std::filesystem::path& file, Stages& stages,
+                    BumpConversion& conversion) {
+    if (map.is_streamed())
+        throw InvalidInput(
+            "--cone-map: the map is too large to fit in memory (convert it without this option)");
+    const Image cones = stages.run("cones", [&] {
+        const HeightField heights(map.map().heights, *conversion.bump.wrap);
+        return relaxed_cones(heights, depths_of(file).front());
+    });
+    MapDescription description{.kind = MapKind::height, .color_space = ColorSpace::data};
+    description.detail = "relaxed cones";
+    stages.run("write",
+               [&] { write_image(file, cones, write_description(description, cones.bits())); });
+}
+
 }  // namespace
+
+void check_cone_map(const BumpRequest& request, const Job& job) {
+    if (!request.cone_map) return;
+    const std::filesystem::path& file = *request.cone_map;
+    const std::vector<int> depths = depths_of(file);
+    if (is_texture(file) || depths.empty() || depths.front() < 16)
+        throw UsageError(
+            fmt::format("--cone-map {}: needs two channels of 16 bits or more", file.string()),
+            "use .png, .tif or .exr");
+    if (request.invert)
+        throw UsageError("--invert, --cone-map: cones are those of the heights as they are read");
+    if (request.accuracy.destaircase)
+        throw UsageError(
+            "--destaircase, --cone-map: cones are those of the heights as they are read");
+    check_distinct("--cone-map", file, {job.input, job.output});
+}
 
 BumpOptions bump_options_of(const BumpRequest& request) {
     if (request.strength && request.height)
@@ -352,6 +388,7 @@ BumpConversion convert_bump(const Job& job, const BumpRequest& request, Stages& 
         conversion.transparent = map.map().transparent_count();
         choose_from_map(map, job, request, stages, conversion);
         convert_and_write(map, job, stages, conversion);
+        if (request.cone_map) write_cone_map(map, *request.cone_map, stages, conversion);
     });
     return conversion;
 }

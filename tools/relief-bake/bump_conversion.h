@@ -47,6 +47,7 @@ struct BumpRequest {
     bool slope_moments = false;
     bool xy_only = false;
     MapAlpha alpha = MapAlpha::none;
+    std::optional<std::filesystem::path> cone_map;  ///< For relief mapping with relaxed cones.
     MapOutputOptions output;
     AssumedKinds assumed;
 };
@@ -79,13 +80,17 @@ BumpOptions bump_options_of(const BumpRequest& request);
 /// \throws UsageError if the file cannot store them, or options contradict each other
 BumpFileFormat file_format_of(const BumpRequest& request, const std::filesystem::path& output);
 
+/// Checks the file of a cone map and the options that would make it that of other heights.
+/// \throws UsageError
+void check_cone_map(const BumpRequest& request, const Job& job);
+
 /// "gaussian 4", or the plain name of the kernel.
 std::string kernel_name(const accuracy::BumpMethod& method);
 /// "gaussian 4 in float32, 16 bit"
 std::string method_text(const accuracy::BumpMethod& method);
 
 /// Converts a file. The stages are "read", "look" and "choose" if something is chosen from the map,
-/// "convert" and "write".
+/// "convert" and "write", and "cones" for a cone map.
 /// \throws FileError, UsageError
 BumpConversion convert_bump(const Job& job, const BumpRequest& request, Stages& stages);
 

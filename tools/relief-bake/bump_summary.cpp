@@ -266,6 +266,8 @@ Summary summary_of(const Job& job, const BumpRequest& request, const BumpConvers
                  {"green", enum_name(format.green)},
                  {"zero_code", enum_name(format.flat)},
                  {"dither", enum_name(format.dither)}});
+    summary.add("cones", request.cone_map ? file_and_size(*request.cone_map) : "",
+                {{"cone_map", request.cone_map ? Json(request.cone_map->string()) : Json()}});
     summary.add_findings(conversion.findings);
     const double rate = megapixels_per_second(conversion, stages);
     summary.add_times(stages, fmt::format(" ({:.0f} MPixel/s without file access)", rate));
