@@ -181,6 +181,10 @@ std::vector<PlannedExperiment> decimation_plan(const PlanOptions& options);
 /// the unused texels, with a chart over the padding; and a large mesh for time and memory.
 std::vector<PlannedExperiment> unwrapping_plan(const PlanOptions& options);
 
+/// Methods of relief mapping on a plane: height maps in bands of view angles, with charts over the
+/// angle.
+std::vector<PlannedExperiment> relief_plan(const PlanOptions& options);
+
 /// Interpolation, highlights, Fresnel factors, unit normals, cube maps and antialiasing. Without
 /// OpenGL, those that render measure nothing, and their findings give the reason.
 std::vector<PlannedExperiment> shading_plan(const PlanOptions& options);

@@ -32,7 +32,7 @@ struct ShownExperiment {
     const char* id;
     bool is_chart = false;  ///< The page shows the first chart instead of the costs.
 };
-constexpr std::array<ShownExperiment, 10> shown_experiments = {
+constexpr std::array<ShownExperiment, 11> shown_experiments = {
     {{"normals/torus-jittered"},
      {"tangents/torus-jittered"},
      {"bump/mixed-8"},
@@ -41,6 +41,7 @@ constexpr std::array<ShownExperiment, 10> shown_experiments = {
      {"bake/samples"},
      {"decimation/torus-distance"},
      {"unwrapping/noisy-stretch"},
+     {"relief/bricks-45-70"},
      {"shading/interpolation"},
      {"stability/tangents-scale", true}}};
 

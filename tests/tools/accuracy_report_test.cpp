@@ -116,7 +116,7 @@ TEST(BrokenReport, IsRefusedWithAPointer) {
         {"/experiments/0/id", gone, "/experiments/0/id: is missing"},
         {"/experiments/0/subject", "colour",
          "subject 'colour' is not one of normals, tangents, bump, storage, compression, bake, "
-         "decimation, unwrapping, shading, stability"},
+         "decimation, unwrapping, relief, shading, stability"},
         {"/experiments/0/measurements/1/method", "exact, slow",
          "/experiments/0/measurements/1: repeats method 'exact, slow'"},
         {"/experiments/0/measurements/1/error/rms", "much",

@@ -36,6 +36,7 @@ enum class Subject {
     bake,
     decimation,
     unwrapping,
+    relief,
     shading,
     stability
 };
@@ -53,6 +54,7 @@ inline constexpr auto enum_names<accuracy::Subject> =
                                                 {"bake", accuracy::Subject::bake},
                                                 {"decimation", accuracy::Subject::decimation},
                                                 {"unwrapping", accuracy::Subject::unwrapping},
+                                                {"relief", accuracy::Subject::relief},
                                                 {"shading", accuracy::Subject::shading},
                                                 {"stability", accuracy::Subject::stability}});
 
