@@ -216,7 +216,7 @@ TEST(EmbeddedShaders, ComputeDerivativesInUniformControlFlow) {
         "",                      // The initial value of a global variable.
         "derived_frame",         // Called for such a value.
         "normal_of_heights",     // Called for such a value.
-        "height_at",             // Called by normal_of_heights().
+        "height_beside",         // Called by normal_of_heights().
         "environment_radiance",  // Called in each pixel by what mirrors, refracts and is seen.
         "visible_share",         // Called for each light; shadow maps have one level.
     };

@@ -262,7 +262,8 @@ TEST_F(DepthMapped, FlatViewsStayFinite) {
     for (const double degrees : {89.0, 89.99, 120.0}) {
         Scene scene = relief_scene(hills(64, 64), camera_at(degrees), 16.0F);
         scene.materials[0].double_sided = true;
-        for (const float value : radiance(scene, 64, 64).as<float>())
+        const Image drawn = radiance(scene, 64, 64);
+        for (const float value : drawn.as<float>())
             EXPECT_TRUE(std::isfinite(value));
     }
 }
