@@ -129,8 +129,10 @@ TEST(MistakeOption, RefusesWhatItContradicts) {
     const std::string scene = "data/scenes/mistakes.json --mistake green ";
     expect_refusals(
         workplace, "relief-view", "old.png",
-        {{"data/vase.obj --mistake gren", 2, "'gren' is not one of all, normal-matrix"},
-         {"data/vase.obj --mistake green,green", 2, "'green' is named twice"},
+        {{"data/vase.obj --mistake gren", 2,
+          "--mistake gren: 'gren' is not one of all, normal-matrix"},
+         {"data/vase.obj --mistake green,green", 2,
+          "--mistake green,green: 'green' is named twice"},
          {scene + "--turntable 3 --output out/old.png", 2,
           "--mistake: applies to one picture, not to a sequence"},
          {scene + "--compare interpolation=flat --output out/old.png", 2,

@@ -190,7 +190,8 @@ void ShaderPanel::draw_steps(const PanelInput& input) {
 void ShaderPanel::draw_mistakes(const PanelInput& input) {
     const Mistake* const chosen = mistakes_.chosen();
     const std::string name = chosen == nullptr ? "none" : std::string(chosen->name);
-    if (ImGui::BeginCombo(begin_row("Mistake").c_str(), name.c_str())) {
+    if (ImGui::BeginCombo(begin_row("Mistake").c_str(), name.c_str(),
+                          ImGuiComboFlags_HeightLarge)) {
         const auto entry = [&](const std::string& text, const Mistake* mistake) {
             if (ImGui::Selectable(text.c_str(), mistake == chosen)) mistakes_.choose(mistake);
             probe_item("mistake " + text);
