@@ -48,6 +48,23 @@ TEST(MakePage, HasPicturesTablesAndTheCommandAndLoadsNothing) {
     for (const char* address : {"http://", "https://"})
         EXPECT_EQ(page.find(address), std::string::npos) << address;
     EXPECT_EQ(page.find("{{"), std::string::npos);
+    EXPECT_EQ(count_of(page, "<iframe title=\"the models, to be orbited\""), 1U);
+    EXPECT_LT(page.size(), 3'000'000U);
+}
+
+TEST_LABELS(not_sanitized);
+TEST(MakePage, LeavesTheLiveViewOut) {
+    const Workplace workplace;
+    workplace.write_square("out/square.obj");
+    const std::string line =
+        "relief make out/square.obj out/a.glb --size 32 --padding 2 --occlusion-rays 0 "
+        "--no-live-view";
+    const ProgramResult result = workplace.run(line + " --report out/a.html");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(count_of(workplace.read("out/a.html"), "<iframe"), 0U);
+    const ProgramResult useless = workplace.run(line + " --report out/a.json");
+    EXPECT_EQ(useless.exit_code, 2);
+    EXPECT_THAT(useless.error, HasSubstr("--no-live-view: there is no page of one asset"));
 }
 
 TEST_LABELS(not_sanitized);

@@ -228,6 +228,20 @@ TEST(MeshPreview, LargeMapsAreReducedByAveragingNormals) {
     EXPECT_NEAR(image.as<float>()[3 * 7 + 2], 1.0F, 1e-4F);
 }
 
+TEST(MeshPreview, IsAlsoAPage) {
+    const Workplace workplace;
+    write_pair(workplace);
+    const auto result = workplace.run(
+        "relief-bake mesh high.obj low.obj out/map.png --size 8 --quiet --preview out/preview.html "
+        "--preview-size 64x48");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(workplace.outputs(), "map.png preview.html");
+    const std::string page = workplace.read("out/preview.html");
+    EXPECT_THAT(page, HasSubstr("<title>preview</title>"));
+    EXPECT_THAT(page, HasSubstr("default-src 'none'"));
+    EXPECT_LT(page.size(), 200'000U);
+}
+
 TEST(MeshPreview, OpenGLIsLoadedFirstAndOnlyForPreviews) {
     const Workplace workplace;
     write_pair(workplace);
@@ -263,7 +277,7 @@ TEST(MeshPreviewRefusal, LeavesAllFilesUnchanged) {
          {"relief-bake mesh high.obj low.obj out/map.png --preview out/map.png", 2,
           "--preview out/map.png: is also the input or the output"},
          {"relief-bake mesh high.obj low.obj out/map.png --preview out/p.jpg", 2,
-          "--preview out/p.jpg: the format is not supported (use .png)"},
+          "--preview out/p.jpg: the format is not supported (use .png or .html)"},
          {"relief-bake mesh high.obj low.obj out/map.png --report out/r.png --preview out/r.png", 2,
           "--report out/r.png: is the name of a model or an image (use .json)"},
          {"relief-bake mesh high.obj low.obj out/map.png --height-map out/h.png --preview "

@@ -192,7 +192,7 @@ std::string without_comments(std::string_view code) {
 std::string without_spaces(std::string_view script) {
     static constexpr std::string_view separators = "=,;:{}()[]<>?&|*!\n";
     // A slash after one of these begins a regular expression.
-    static constexpr std::string_view before_pattern = "=,;:{}([?&|!\n";
+    static constexpr std::string_view before_pattern = "=,;:{}([?&|!>\n";
     const auto is_one_of = [](std::string_view set, char c) {
         return set.find(c) != std::string_view::npos;
     };

@@ -235,10 +235,12 @@ void add_preview_options(CLI::App& app, PreviewOptions& options) {
     const std::string group = "Report";
     add_path(app, "--preview", options.file,
              "Also write a picture (.png) of the high models, the low model with the finished map, "
-             "and the low model without it, side by side.")
+             "and the low model without it, side by side; or a page (.html) that shows them beside "
+             "a line and can be orbited.")
         .group(group);
     add_value(app, "--preview-size", "WxH",
-              "Size of each of the three panels in pixels. Default: 512x512.",
+              "Size of each of the three panels in pixels, or of the picture of the page. Default: "
+              "512x512.",
               [&](const std::string& subject, const std::string& text) {
                   options.size = parse_size(subject, text);
               })
@@ -660,10 +662,10 @@ void check(const PreviewOptions& options, const std::vector<std::filesystem::pat
         if (options.size) throw UsageError("--preview-size: has no effect without --preview");
         return;
     }
-    if (extension_of(*options.file) != ".png")
+    if (extension_of(*options.file) != ".png" && extension_of(*options.file) != ".html")
         throw UsageError(
             fmt::format("--preview {}: the format is not supported", options.file->string()),
-            "use .png");
+            "use .png or .html");
     check_distinct("--preview", *options.file, files);
     require_folder_of(*options.file);
 }

@@ -6,12 +6,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <map>
 #include <numbers>
 #include <optional>
+#include <span>
 
+#include "common/text.h"
+#include "file_replacement.h"
+#include "page_comparison.h"
 #include "portable_math.h"
 #include "relief/mesh/image.h"
 #include "relief/mesh/image_file.h"
@@ -271,6 +276,21 @@ Image draw_panel(RenderCache& cache, const Context& context, const Scene& scene,
     return image;
 }
 
+bool is_page(const PreviewOptions& options) {
+    return extension_of(*options.file) == ".html";
+}
+
+/// Writes a page (docs/page.md) with the high models beside the low one.
+/// \param scenes  the high models, the low model with the map, and without it
+void write_page(const std::filesystem::path& file, const Context& context, const Camera& camera,
+                const std::array<const Scene*, 3>& scenes, const glm::ivec2& size) {
+    const std::string page =
+        comparison_page(context, camera, {"high", scenes[0]},
+                        {{"low with the map", scenes[1]}, {"low without it", scenes[2]}}, size,
+                        file.stem().string());
+    relief::detail::replace_file(file, std::as_bytes(std::span(page)));
+}
+
 /// Reads the next rows of a map as normals.
 Image read_normals(ImageRowReader& reader, int rows, const NormalMapFormat& format) {
     const ImageInfo& info = reader.info();
@@ -346,11 +366,17 @@ void MeshPreview::draw(const PreviewOptions& options, PreviewModels models,
         Scene low = low_scene(models, maps, reading.space);
         const float aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
         const Camera camera = camera_for(high, low, view, aspect);
-        Image picture = make_image(panels * size.x, size.y, 3, 8, ColorSpace::srgb);
         for (Scene* scene : {&high, &low}) {
             scene->background = default_background;
             add_default_lights(*scene, camera);
         }
+        if (is_page(options)) {
+            const Scene plain = low;
+            add_normal_maps(low, maps, reading, size);
+            write_page(*options.file, *context_, camera, {&high, &low, &plain}, size);
+            return;
+        }
+        Image picture = make_image(panels * size.x, size.y, 3, 8, ColorSpace::srgb);
         RenderCache cache(*context_);
         copy_panel(picture, draw_panel(cache, *context_, high, camera, size), 0);
         high = {};

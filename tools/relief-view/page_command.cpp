@@ -28,7 +28,7 @@ using namespace relief::shade;
 
 namespace {
 
-/// Each explained pixel is about 1 kB of the page.
+/// Each explained pixel is 1 to 2 kB of the page.
 constexpr int max_probes = 4096;
 
 DebugView view_of(const std::string& subject, const std::string& name) {

@@ -35,6 +35,7 @@ struct MakeCommand {
     GeneralOptions general;
     bool explain = false;
     bool force = false;
+    bool no_live_view = false;
 };
 
 /// The assets to make.
@@ -167,7 +168,7 @@ ExitCode make_one(const CLI::App& app, const MakeCommand& command, const MakeTas
     if (has_page(report)) {
         stages.run("report", [&] {
             write_make_page(*report.file, task.request, task.job, made, stages,
-                            repeating_line(task.request, task.job));
+                            repeating_line(task.request, task.job), !command.no_live_view);
         });
         report.file.reset();
     }
@@ -300,6 +301,8 @@ ExitCode make(const CLI::App& app, const MakeCommand& command) {
                          "make a single asset without an output folder");
     }
     if (!command.job_file) check_asset_options(app, command.request);
+    if (command.no_live_view && !(list.is_single && has_page(command.report)))
+        throw UsageError("--no-live-view: there is no page of one asset", "leave it out");
     check_start(command);
     if (command.shard && list.is_single)
         throw UsageError("--shard: divides several assets", "give an output folder with -o");
@@ -367,6 +370,10 @@ void add_make_options(CLI::App& app, MakeCommand& command) {
                "named. --report FILE.json: also write them as JSON.")
         .group(output);
     add_report_options(app, command.report);
+    add_switch(app, "--no-live-view", command.no_live_view,
+               "Leave the models out of the report page (--report NAME.html), which can be orbited "
+               "in it.")
+        .group("Report");
     add_general_options(app, command.general);
     set_examples(app,
                  {"relief make data/urn-high.ply out/urn-asset.glb --triangles 2000 --size 512",

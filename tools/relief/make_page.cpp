@@ -19,6 +19,7 @@
 #include "make_loss.h"
 #include "make_pictures.h"
 #include "make_remesh.h"
+#include "page_comparison.h"
 #include "page_text.h"
 
 namespace relief::tools {
@@ -28,8 +29,13 @@ namespace {
 class PageWriter {
   public:
     PageWriter(std::filesystem::path folder, const MakeRequest& request, const Job& job,
-               const MadeAsset& made, const Stages& stages)
-        : folder_(std::move(folder)), request_(request), job_(job), made_(made), stages_(stages) {}
+               const MadeAsset& made, const Stages& stages, bool has_live_view)
+        : folder_(std::move(folder)),
+          request_(request),
+          job_(job),
+          made_(made),
+          stages_(stages),
+          has_live_view_(has_live_view) {}
 
     [[nodiscard]] std::string figures() const;
     [[nodiscard]] std::string comparison() const;
@@ -44,12 +50,14 @@ class PageWriter {
   private:
     [[nodiscard]] std::string img(const Image& image, const std::string& alt,
                                   const std::string& id = "") const;
+    [[nodiscard]] std::string live_view(AssetScenes& scenes, const glm::ivec2& size) const;
 
     std::filesystem::path folder_;
     const MakeRequest& request_;
     const Job& job_;
     const MadeAsset& made_;
     const Stages& stages_;
+    bool has_live_view_;
 };
 
 std::string PageWriter::img(const Image& image, const std::string& alt,
@@ -66,6 +74,24 @@ std::string PageWriter::figures() const {
                                     asset.normal_map.width, asset.normal_map.height));
 }
 
+/// The models as a page of their own in the page. What it lacks is no failure of the report.
+std::string PageWriter::live_view(AssetScenes& scenes, const glm::ivec2& size) const {
+    constexpr std::size_t max_bytes = 16'000'000;
+    if (!has_live_view_) return "";
+    std::string reason;
+    try {
+        const std::string page = scenes.page(made_.asset, size);
+        if (page.size() <= max_bytes)
+            return "<h2>To look around</h2>\n" + embedded_page(page, "the models, to be orbited");
+        reason = fmt::format("it would have {}", byte_size(page.size()));
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error& error) {
+        reason = error.what();
+    }
+    return fmt::format("<p>There is no view to look around: {}.</p>\n", html_escaped(reason));
+}
+
 std::string PageWriter::comparison() const {
     const glm::ivec2 size(960, 720);
     try {
@@ -80,10 +106,10 @@ std::string PageWriter::comparison() const {
             "maps</label></div>\n"
             "<figcaption>Left of the line: the source. Right: the choice above. One camera, the "
             "same lights, drawn by {}.</figcaption>\n"
-            "<details><summary>All pictures</summary>{}{}</details></figure>\n",
+            "<details><summary>All pictures</summary>{}{}</details></figure>\n{}",
             img(pictures.source, "source"), img(pictures.asset, "asset or asset without maps"),
             html_escaped(pictures.backend), img(pictures.asset, "asset", "asset"),
-            img(pictures.plain, "asset without maps", "plain"));
+            img(pictures.plain, "asset without maps", "plain"), live_view(scenes, size));
     } catch (const Cancelled&) {
         throw;
     } catch (const FileError&) {
@@ -310,8 +336,9 @@ std::string PageWriter::maps() const {
 }  // namespace
 
 void write_make_page(const std::filesystem::path& file, const MakeRequest& request, const Job& job,
-                     const MadeAsset& made, const Stages& stages, const std::string& command) {
-    const PageWriter writer(file.parent_path(), request, job, made, stages);
+                     const MadeAsset& made, const Stages& stages, const std::string& command,
+                     bool has_live_view) {
+    const PageWriter writer(file.parent_path(), request, job, made, stages, has_live_view);
     const std::string page =
         filled_page("make.html", {{"name", html_escaped(made.asset.name)},
                                   {"style", std::string(page_part("make.css"))},

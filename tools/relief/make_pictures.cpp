@@ -11,6 +11,7 @@
 
 #include "make_scenes.h"
 #include "mesh_preview.h"
+#include "page_comparison.h"
 #include "relief/mesh/atlas_picture.h"
 #include "relief/mesh/texcoord_quality.h"
 #include "relief/shade/fidelity.h"
@@ -34,11 +35,19 @@ Scene without_maps(Scene scene) {
     return scene;
 }
 
+constexpr glm::vec4 dark(0.03F, 0.033F, 0.037F, 1.0F);
+
+/// The scene with the lights and the background of the report.
+Scene lit(Scene scene, const Camera& camera) {
+    add_default_lights(scene, camera);
+    scene.background = dark;
+    return scene;
+}
+
 Image draw_picture(RenderCache& cache, const Context& context, Scene scene, const Camera& camera,
                    const glm::ivec2& size) {
     Report ignored;
-    add_default_lights(scene, camera);
-    scene.background = glm::vec4(0.03F, 0.033F, 0.037F, 1.0F);
+    scene = lit(std::move(scene), camera);
     const FrameSettings settings{.width = size.x, .height = size.y};
     Renderer renderer(cache, context, scene, plan_effects(scene, settings), settings, ignored);
     Image image = renderer.draw(camera).image;
@@ -75,6 +84,27 @@ AssetPictures AssetScenes::draw(const make::Asset& made, const glm::ivec2& size)
     pictures.asset = draw_picture(cache, context, asset, camera, size);
     pictures.plain = draw_picture(cache, context, without_maps(asset), camera, size);
     return pictures;
+}
+
+std::string AssetScenes::page(const make::Asset& made, const glm::ivec2& size) {
+    constexpr std::size_t max_triangles = 250'000;
+    auto& [context, cache, source, asset] = *implementation_;
+    const ViewDirection view = best_view(made.mesh);
+    const float aspect = static_cast<float>(size.x) / static_cast<float>(size.y);
+    const Camera camera =
+        framed(source, view.azimuth, view.elevation, default_vertical_fov, aspect);
+    std::size_t triangles = 0;
+    for (const Instance& instance : source.instances)
+        triangles += source.meshes[instance.mesh]->triangles.size();
+    const Scene before = lit(source, camera);
+    const Scene after = lit(asset, camera);
+    const Scene plain = lit(without_maps(asset), camera);
+    const PageSide right = {"asset", &after};
+    const PageSide without = {"asset without maps", &plain};
+    if (triangles > max_triangles)
+        return comparison_page(context, camera, without, {right}, size, "asset");
+    return comparison_page(context, camera, {"source", &before}, {right, without}, size,
+                           "source and asset");
 }
 
 struct AssetDrawer::Implementation {

@@ -38,6 +38,12 @@ class AssetScenes {
     /// \param made  the content of the asset's file
     AssetPictures draw(const make::Asset& made, const glm::ivec2& size);
 
+    /// Returns a page (docs/page.md) with the source on the left of a line, and the asset or the
+    /// asset without maps on its right. A source of more than 250,000 triangles is not in it: the
+    /// asset without maps is on the left then.
+    /// \throws Error if a page cannot draw the scenes
+    std::string page(const make::Asset& made, const glm::ivec2& size);
+
   private:
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
