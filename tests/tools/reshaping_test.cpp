@@ -621,7 +621,11 @@ TEST(LodsCommand, KeepsTheChildrenOfANodeOutOfItsLevels) {
     }
     workplace.write("old.glb", "old");
     expect_refusals(workplace, "relief-mesh", "old.glb",
-                    {{"relief-mesh lods data/vase.obj out/old.glb --names --separate", 2,
+                    {{"relief-mesh lods data/vase.obj out/old.glb --preview out/p.html", 2,
+                      "--preview: shows separate files (add --separate, or leave it out)"},
+                     {"relief-mesh lods data/vase.obj out/old.glb --separate --preview out/p.png",
+                      2, "--preview out/p.png: the format is not supported (use .html)"},
+                     {"relief-mesh lods data/vase.obj out/old.glb --names --separate", 2,
                       "--names: has no effect with --separate, whose files have no levels (leave "
                       "one of them out)"},
                      {"relief-mesh lods data/vase.obj out/old.ply", 2,
@@ -637,6 +641,20 @@ TEST(LodsCommand, KeepsTheChildrenOfANodeOutOfItsLevels) {
                       2, "--report out/old_LOD3.glb: is also the input or the output"},
                      {"relief-mesh lods data/vase.obj out/old.glb --error 0", 2,
                       "--error 0: not between 0.001 and 1000 pixels"}});
+}
+
+TEST_LABELS(not_sanitized);
+TEST(LodsCommand, ShowsTheLevelsOnAPage) {
+    const Workplace workplace;
+    const ProgramResult result = workplace.run(
+        "relief-mesh lods data/vase.obj out/v.glb --triangles 1000,300 --switch distance "
+        "--separate --preview out/levels.html --quiet");
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(workplace.outputs(), "levels.html v_LOD0.glb v_LOD1.glb v_LOD2.glb");
+    const std::string page = workplace.read("out/levels.html");
+    EXPECT_THAT(page, testing::HasSubstr("<title>levels</title>"));
+    EXPECT_GT(page.size(), 100'000U);
+    EXPECT_LT(page.size(), 1'500'000U);
 }
 
 /// Runs `relief-mesh lods` and returns its report.

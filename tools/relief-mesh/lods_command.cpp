@@ -45,6 +45,7 @@ struct LodsCommand {
     SwitchRule rule = SwitchRule::flip;
     bool names = false;
     bool separate = false;
+    std::optional<std::filesystem::path> preview;
     ReportOptions report;
     GeneralOptions general;
 
@@ -576,6 +577,12 @@ void check_command(const LodsCommand& command) {
     if (command.names && command.separate)
         throw UsageError("--names: has no effect with --separate, whose files have no levels",
                          "leave one of them out");
+    if (command.preview && !command.separate)
+        throw UsageError("--preview: shows separate files", "add --separate, or leave it out");
+    if (command.preview && extension_of(*command.preview) != ".html")
+        throw UsageError(
+            fmt::format("--preview {}: the format is not supported", command.preview->string()),
+            "use .html");
     for (std::size_t i = 1; i < command.triangles.size(); ++i) {
         if (command.triangles[i] >= command.triangles[i - 1]) {
             throw UsageError(fmt::format("--triangles: {} is not less than {}",
@@ -616,6 +623,13 @@ void check_files(const LodsCommand& command, const JobList& list) {
         }
     }
     if (list.folder) make_folder(*list.folder);
+    if (command.preview) {
+        if (!list.is_single())
+            throw UsageError("--preview: shows one model", "leave it out, or give one model");
+        check_distinct("--preview", *command.preview, files);
+        require_folder_of(*command.preview);
+        files.push_back(*command.preview);
+    }
     check(command.report, files);
     require_folder_of(list.jobs.front().output);
 }
@@ -625,6 +639,9 @@ ExitCode lods_of_one(const CLI::App& app, const LodsCommand& command, const Job&
     Stages stages(command.general.quiet);
     std::unique_ptr<LevelPictures> pictures;
     const LodsResult done = make_levels(command, job, stages, pictures);
+    pictures.reset();
+    if (command.preview && done.files.size() > 1)
+        stages.run("preview", [&] { write_level_page(*command.preview, done.files); });
     const Summary summary = lods_summary(command, job, done, stages);
     if (!command.general.quiet) summary.print();
     head["input"] = job.input.string();
@@ -722,12 +739,17 @@ void add_lods_options(CLI::App& app, LodsCommand& command) {
                "Write separate files without MSFT_lod, OUT_LOD0.glb (IN), OUT_LOD1.glb, ..., "
                "instead of OUT.glb.")
         .group(output);
+    add_path(app, "--preview", command.preview,
+             "Also write a page (.html) that shows IN beside each level and can be orbited. Needs "
+             "--separate and one model. docs/page.md describes pages.")
+        .group("Report");
     add_report_options(app, command.report);
     add_general_options(app, command.general);
     set_examples(app, {"relief-mesh lods data/vase.obj out/vase-lods.glb",
                        "relief-mesh lods data/vase.obj out/vase-lods.glb --triangles 3000,1000,300 "
                        "--error 1px --names",
-                       "relief-mesh lods data/vase.obj out/vase.glb --error 0.5px --separate",
+                       "relief-mesh lods data/vase.obj out/vase.glb --error 0.5px --separate "
+                       "--preview out/vase-lods.html",
                        "relief-mesh lods data/*.obj -o out/lods/ --report out/lods.json"});
 }
 

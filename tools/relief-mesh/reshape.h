@@ -127,4 +127,11 @@ class LevelPictures {
     std::unique_ptr<Implementation> implementation_;
 };
 
+/// Writes a page (docs/page.md) with the input on the left of a line, and one of its levels on the
+/// right, in the default light.
+/// \param levels  files, LOD0 first
+/// \throws Error if they cannot be drawn; FileError
+void write_level_page(const std::filesystem::path& page,
+                      const std::vector<std::filesystem::path>& levels);
+
 }  // namespace relief::tools

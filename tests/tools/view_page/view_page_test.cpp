@@ -303,7 +303,12 @@ void expect_equal_pictures(const std::string& arguments) {
 
 TEST_LABELS(not_sanitized);
 TEST(ViewPage, WorksInABrowser) {
-    expect_equal_pictures("few");
+    expect_equal_pictures("few ViewPage");
+}
+
+TEST_LABELS(not_sanitized);
+TEST(ViewPage, TeachesInABrowser) {
+    expect_equal_pictures("few LessonPage");
 }
 
 TEST_LABELS(slow, not_sanitized);

@@ -106,7 +106,9 @@ def cases():
     return FEW + [str(scene.relative_to(FOLDER)) for scene in scenes] + found
 
 
-class ViewPage(unittest.TestCase):
+class PageTest(unittest.TestCase):
+    """Opens pages in one browser."""
+
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
@@ -135,6 +137,14 @@ class ViewPage(unittest.TestCase):
     def run_in(self, script, *arguments):
         return self.window.run(f"const page = {pages.ROOT}.relief; {script}", *arguments)
 
+    def tearDown(self):
+        # The browser itself reports slow readings of pixels, and the lost context of a test.
+        messages = [entry for entry in self.window.log("browser")
+                    if "ReadPixels" not in entry["message"] and "CONTEXT_LOST" not in entry["message"]]
+        self.assertEqual(messages, [], "the console has messages")
+
+
+class ViewPage(PageTest):
     def test_draws_the_same_picture(self):
         for case in cases():
             with self.subTest(case):
@@ -215,21 +225,6 @@ class ViewPage(unittest.TestCase):
                                    "--max-difference", 255)
         self.assertLess(result["comparison"]["flip_mean"], MAX_FLIP)
 
-    def test_moves_materials_as_the_renderer_does(self):
-        file = self.scene("moving.gltf", MOVING_MATERIAL)
-        self.page("materials.html", file, "--samples", "1", "--camera", "0,0", "--size", "96x72")
-        middle = slice(4 * (96 * 40 + 48), 4 * (96 * 40 + 48) + 4)
-        colors = set()
-        for seconds in (0, 0.3, 0.5, 0.99, 1, 1.7):
-            self.run_in("page.moveTo(arguments[0])", seconds)
-            drawn = self.pixels()[middle]
-            pages.relief_view(TOOL, file, "--samples", "1", "--camera", "0,0", "--size", "96x72", "--time", seconds,
-                              "--output", self.work / "then.png")
-            expected = pages.read_png(self.work / "then.png")[middle]
-            self.assertLessEqual(max(abs(a - b) for a, b in zip(drawn, expected)), 1, (seconds, drawn, expected))
-            colors.add(drawn)
-        self.assertEqual(len(colors), 6)
-
     def test_deforms_as_the_renderer_does(self):
         for name in MOVING if SHARED else []:
             file = self.page("moving.html", model(name), "--time", "0.5", "--shadow", "2", "--size",
@@ -250,6 +245,54 @@ class ViewPage(unittest.TestCase):
         first = self.pixels()
         self.run_in("const list = page.part('view'); list.value = 'diffuse'; list.dispatchEvent(new Event('change'))")
         self.assertNotEqual(self.pixels(), first)
+
+    def test_quantizes_vertices(self):
+        difference = pages.compared(TOOL, self.window, ["data/vase.obj"], self.work / "case", *SIZE,
+                                    page_options=["--page-quantize"])
+        self.assertLess(difference["flip_mean"], MAX_FLIP)
+
+    def test_fits_a_phone(self):
+        self.page("phone.html", "data/scenes/illumination.json")
+        self.window.resize(390, 844, is_phone=True)
+        self.assertEqual(self.window.run("return document.scrollingElement.scrollWidth"), 390)
+        self.assertEqual(self.window.run("return document.scrollingElement.scrollHeight"), 844)
+        outside = ("return [...page.root.querySelectorAll('canvas, button, input, select, summary')].filter((e) => e.checkVisibility())"
+                   ".map((e) => e.getBoundingClientRect()).filter((b) => b.left < 0 || b.right > 390 || b.bottom > 844).length")
+        self.assertEqual(self.run_in(outside), 0)
+        self.assertGreater(self.run_in("return page.canvas.getBoundingClientRect().height"), 500)
+        self.run_in("page.part('shader').open = true")
+        self.assertEqual(self.run_in(outside), 0)
+        self.assertEqual(self.window.run("return document.scrollingElement.scrollWidth"), 390)
+        self.assertGreater(self.run_in("return page.canvas.getBoundingClientRect().height"), 200)
+        self.window.resize(1280, 900)
+
+    def test_respects_reduced_motion(self):
+        for value in ("reduce", "no-preference"):
+            self.window.devtools("Emulation.setEmulatedMedia",
+                                 features=[{"name": "prefers-reduced-motion", "value": value}])
+            self.page("still.html", "data/scenes/illumination.json", "--size", "64x64")
+            self.run_in("page.drawn = 0; const draw = page.draw; page.draw = (...size) => { page.drawn++; draw.apply(page, size); };"
+                        "page.orbit(0.3, 0.1)")
+            self.window.wait_for(f"return {pages.ROOT}.relief.drawn > 0")
+            # Nothing moves by itself: neither the scene, nor the camera after it was let go.
+            before = self.run_in("return JSON.stringify(page.camera)")
+            self.window.run("return new Promise((done) => setTimeout(done, 400))")
+            self.assertEqual(self.run_in("return [page.drawn, page.scene.time, Boolean(page.isPlaying)]"), [1, 0, False])
+            self.assertEqual(self.run_in("return JSON.stringify(page.camera)"), before)
+            self.assertEqual(self.window.run("return document.getAnimations().length"), 0)
+        self.window.devtools("Emulation.setEmulatedMedia", features=[])
+
+    def test_says_what_is_missing(self):
+        file = self.work / "missing.html"
+        pages.relief_view(TOOL, "data/vase.obj", "--size", "64x64", "--output", file)
+        text = file.read_text().replace("getContext('webgl2'", "getContext('webgl9'")
+        file.write_text(text)
+        with self.assertRaisesRegex(RuntimeError, "WebGL 2"):
+            pages.open_page(self.window, file)
+
+
+class LessonPage(PageTest):
+    """Sides, steps, shaders, explained pixels, and several pages."""
 
     def split_at(self, share):
         self.run_in("page.split.move(arguments[0])", share)
@@ -274,7 +317,7 @@ class ViewPage(unittest.TestCase):
         self.run_in("page.part('split').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowRight'}))")
         self.assertAlmostEqual(self.run_in("return page.split.at"), 0.02)
         # Both sides of a comparison with the file itself are the same, also when it moves.
-        for scene in ("data/scenes/illumination.json", "data/scenes/environment-mapping.json", "data/vase.obj"):
+        for scene in ("data/scenes/illumination.json", "data/vase.obj"):
             self.page("same.html", scene, "--compare-to", scene, "--size", "{}x{}".format(*SIZE))
             self.run_in("page.scene.duration > 0 && page.moveTo(0.7); page.orbit(0.3, 0.1)")
             self.assertEqual(self.split_at(0), self.split_at(1), scene)
@@ -378,25 +421,20 @@ class ViewPage(unittest.TestCase):
         last = self.run_in("const p = page.probes.probes.at(-1); page.probes.pick(...page.probes.place(p.at)); return page.probes.chosen === p")
         self.assertTrue(last)
 
-    def test_quantizes_vertices(self):
-        difference = pages.compared(TOOL, self.window, ["data/vase.obj"], self.work / "case", *SIZE,
-                                    page_options=["--page-quantize"])
-        self.assertLess(difference["flip_mean"], MAX_FLIP)
-
-    def test_fits_a_phone(self):
-        self.page("phone.html", "data/scenes/illumination.json")
-        self.window.resize(390, 844, is_phone=True)
-        self.assertEqual(self.window.run("return document.scrollingElement.scrollWidth"), 390)
-        self.assertEqual(self.window.run("return document.scrollingElement.scrollHeight"), 844)
-        outside = ("return [...page.root.querySelectorAll('canvas, button, input, select, summary')].filter((e) => e.checkVisibility())"
-                   ".map((e) => e.getBoundingClientRect()).filter((b) => b.left < 0 || b.right > 390 || b.bottom > 844).length")
-        self.assertEqual(self.run_in(outside), 0)
-        self.assertGreater(self.run_in("return page.canvas.getBoundingClientRect().height"), 500)
-        self.run_in("page.part('shader').open = true")
-        self.assertEqual(self.run_in(outside), 0)
-        self.assertEqual(self.window.run("return document.scrollingElement.scrollWidth"), 390)
-        self.assertGreater(self.run_in("return page.canvas.getBoundingClientRect().height"), 200)
-        self.window.resize(1280, 900)
+    def test_moves_materials_as_the_renderer_does(self):
+        file = self.scene("moving.gltf", MOVING_MATERIAL)
+        self.page("materials.html", file, "--samples", "1", "--camera", "0,0", "--size", "96x72")
+        middle = slice(4 * (96 * 40 + 48), 4 * (96 * 40 + 48) + 4)
+        colors = set()
+        for seconds in (0, 0.3, 0.5, 0.99, 1, 1.7):
+            self.run_in("page.moveTo(arguments[0])", seconds)
+            drawn = self.pixels()[middle]
+            pages.relief_view(TOOL, file, "--samples", "1", "--camera", "0,0", "--size", "96x72", "--time", seconds,
+                              "--output", self.work / "then.png")
+            expected = pages.read_png(self.work / "then.png")[middle]
+            self.assertLessEqual(max(abs(a - b) for a, b in zip(drawn, expected)), 1, (seconds, drawn, expected))
+            colors.add(drawn)
+        self.assertEqual(len(colors), 6)
 
     def test_two_pages_at_once(self):
         sources = {"vase": ["data/vase.obj", "--height-map", "data/bricks-height.png"],
@@ -418,36 +456,6 @@ class ViewPage(unittest.TestCase):
         for name, coded in zip(sources, drawn):
             rows = base64.b64decode(coded)
             self.assertEqual(b"".join(rows[384 * y:384 * (y + 1)] for y in reversed(range(72))), alone[name])
-
-    def test_respects_reduced_motion(self):
-        for value in ("reduce", "no-preference"):
-            self.window.devtools("Emulation.setEmulatedMedia",
-                                 features=[{"name": "prefers-reduced-motion", "value": value}])
-            self.page("still.html", "data/scenes/illumination.json", "--size", "64x64")
-            self.run_in("page.drawn = 0; const draw = page.draw; page.draw = (...size) => { page.drawn++; draw.apply(page, size); };"
-                        "page.orbit(0.3, 0.1)")
-            self.window.wait_for(f"return {pages.ROOT}.relief.drawn > 0")
-            # Nothing moves by itself: neither the scene, nor the camera after it was let go.
-            before = self.run_in("return JSON.stringify(page.camera)")
-            self.window.run("return new Promise((done) => setTimeout(done, 400))")
-            self.assertEqual(self.run_in("return [page.drawn, page.scene.time, Boolean(page.isPlaying)]"), [1, 0, False])
-            self.assertEqual(self.run_in("return JSON.stringify(page.camera)"), before)
-            self.assertEqual(self.window.run("return document.getAnimations().length"), 0)
-        self.window.devtools("Emulation.setEmulatedMedia", features=[])
-
-    def test_says_what_is_missing(self):
-        file = self.work / "missing.html"
-        pages.relief_view(TOOL, "data/vase.obj", "--size", "64x64", "--output", file)
-        text = file.read_text().replace("getContext('webgl2'", "getContext('webgl9'")
-        file.write_text(text)
-        with self.assertRaisesRegex(RuntimeError, "WebGL 2"):
-            pages.open_page(self.window, file)
-
-    def tearDown(self):
-        # The browser itself reports slow readings of pixels, and the lost context of a test.
-        messages = [entry for entry in self.window.log("browser")
-                    if "ReadPixels" not in entry["message"] and "CONTEXT_LOST" not in entry["message"]]
-        self.assertEqual(messages, [], "the console has messages")
 
 
 if __name__ == "__main__":
