@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "accuracy/figure_table.h"
@@ -159,6 +160,8 @@ TEST(AccuracyDocument, HoldsTheStoredFiguresOfTheExperiments) {
             {"id", id}, {"input", entry.input}, {"measurements", nlohmann::json::array()}};
         for (const auto& [method, values] : entry.figures) {
             if (values.size() != 7) continue;  // It is a curve.
+            nlohmann::ordered_json cost = nlohmann::ordered_json::object();
+            if (values[6] > 0.0) cost["stored_bytes"] = values[6];  // Pages show 0 as a dash.
             experiment["measurements"].push_back({{"method", method},
                                                   {"error",
                                                    {{"undefined", values[1]},
@@ -166,14 +169,14 @@ TEST(AccuracyDocument, HoldsTheStoredFiguresOfTheExperiments) {
                                                     {"mean", values[3]},
                                                     {"p99", values[4]},
                                                     {"max", values[5]}}},
-                                                  {"cost", {{"stored_bytes", values[6]}}}});
+                                                  {"cost", std::move(cost)}});
         }
         const std::size_t methods = compare_with_the_page(page, experiment);
         // Long tables have the efficient methods only, whose number depends on measured times.
         EXPECT_TRUE(methods == 0 || methods >= 3) << id;
         compared += methods > 0 ? 1 : 0;
     }
-    EXPECT_EQ(compared, 9U) << "an experiment of the page was not found";
+    EXPECT_EQ(compared, 10U) << "an experiment of the page was not found";
 }
 
 /// Returns the commands with a recommendation in the page.
