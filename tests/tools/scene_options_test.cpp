@@ -80,6 +80,29 @@ TEST(SceneOptions, MapReplacesTheDiffuseColorOfEveryMaterial) {
     EXPECT_TRUE(scene.materials[0].diffuse_texture);
 }
 
+TEST(SceneOptions, AHeightMapDisplacesIfADepthOrAMethodIsGiven) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    ViewOptions options = of(workplace / "square.obj");
+    options.height_map = "h.png";
+    options.height_as = HeightUse::bump_map;
+    options.strength = 12.0;
+    EXPECT_FALSE(composed(options).scene().materials.at(0).height_map);
+    options.relief_fields.set(&ReliefMap::method, HeightMethod::relief_mapping);
+    options.relief_fields.set(&ReliefMap::layers, 40);
+    const Scene scene = composed(options).scene();
+    const std::optional<ReliefMap>& map = scene.materials.at(0).height_map;
+    ASSERT_TRUE(map);
+    EXPECT_EQ(map->depth, 12.0F) << "the strength";
+    EXPECT_EQ(map->method, HeightMethod::relief_mapping);
+    EXPECT_EQ(map->layers, 40);
+    EXPECT_EQ(scene.images.at(map->texture.image).name, "h.png");
+    options.relief_fields.set(&ReliefMap::method, HeightMethod::relaxed_cones);
+    EXPECT_THROW((void)composed(options), UsageError) << "no cone map";
+    options.cone_map = "c.png";
+    EXPECT_TRUE(composed(options).scene().materials.at(0).height_map->cones);
+}
+
 TEST(SceneOptions, ANamedMaterialReplacesColorTexturesButKeepsHoles) {
     const Workplace workplace;
     workplace.write_square("plain.obj");

@@ -51,6 +51,17 @@ bool has_overlays(const Options& o) {
 bool uses_bump_map(const Options& o) {
     return o.height_as == HeightUse::bump_map;
 }
+/// Returns the method of relief mapping; none if it is that of a scene file.
+std::optional<HeightMethod> relief_method(const Options& o) {
+    const auto given = o.relief_fields.get(&ReliefMap::method);
+    if (given || is_scene_file(o)) return given;
+    return HeightMethod::maximum_mipmaps;
+}
+template <auto Member, HeightMethod... Methods>
+bool ignores_setting(const Options& o) {
+    const auto method = relief_method(o);
+    return o.relief_fields.has(Member) && method && ((*method == Methods) || ...);
+}
 bool shades_each_pixel(const Options& o) {
     return o.material_fields.get(&Material::interpolation).value_or(Interpolation::per_pixel) ==
            Interpolation::per_pixel;
@@ -264,13 +275,34 @@ const Conflict conflicts[] = {
      add_height_map},
     {"--height-as", [](const Options& o) { return o.height_as && !o.height_map; },
      "needs --height-map", add_height_map},
+    {"--height-layers",
+     ignores_setting<&ReliefMap::layers, HeightMethod::parallax, HeightMethod::maximum_mipmaps>,
+     "applies to layers and cones", "choose another --height-method, or leave it out"},
+    {"--height-bisections",
+     ignores_setting<&ReliefMap::bisections, HeightMethod::parallax,
+                     HeightMethod::parallax_occlusion, HeightMethod::maximum_mipmaps>,
+     "applies to relief mapping and cones", "choose another --height-method, or leave it out"},
+    {"--height-steps",
+     ignores_setting<&ReliefMap::max_steps, HeightMethod::parallax,
+                     HeightMethod::parallax_occlusion, HeightMethod::relief_mapping,
+                     HeightMethod::relaxed_cones>,
+     "applies to maximum mipmaps", "choose another --height-method, or leave it out"},
+    {"--cone-map",
+     [](const Options& o) {
+         const auto method = relief_method(o);
+         return o.cone_map && method && *method != HeightMethod::relaxed_cones;
+     },
+     "applies to relaxed cones", "add --height-method relaxed_cones, or leave it out"},
     {"--kernel", [](const Options& o) { return uses_bump_map(o) && o.kernel; },
      "applies to converted height maps, not to bump maps", drop_it},
     {"--normal-scale", [](const Options& o) { return uses_bump_map(o) && o.normal_scale; },
      "applies to normal maps, not to bump maps", "use --strength"},
     {"--normal-map", [](const Options& o) { return o.normal_map && !shades_each_pixel(o); },
      "does not show with --interpolation gouraud or flat, which do not shade each pixel", drop_one},
-    {"--height-map", [](const Options& o) { return o.height_map && !shades_each_pixel(o); },
+    {"--height-map",
+     [](const Options& o) {
+         return o.height_map && o.relief_fields.empty() && !shades_each_pixel(o);
+     },
      "does not show with --interpolation gouraud or flat, which do not shade each pixel", drop_one},
     {"--tangent-frame",
      [](const Options& o) {

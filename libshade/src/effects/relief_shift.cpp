@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bound of what a relief can displace on the screen: plain geometry of triangles and camera.
-// Tests: tests/shade/effects/relief_shift_test.cpp.
+// Tests: tests/shade/render/depth_mapping_test.cpp.
 #include <algorithm>
 #include <array>
 #include <cmath>

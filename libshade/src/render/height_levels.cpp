@@ -19,9 +19,23 @@ namespace relief::shade::detail {
 
 namespace {
 
+/// Returns the first channel with the same number of bits.
+Image red_channel(const Image& image) {
+    Image red = make_image(image.width, image.height, 1, image.bits(), ColorSpace::data);
+    const auto channels = static_cast<std::size_t>(image.channels);
+    std::visit(
+        [&]<typename Sample>(const std::vector<Sample>& samples) {
+            auto& values = std::get<std::vector<Sample>>(red.samples);
+            for (std::size_t i = 0; i < values.size(); ++i)
+                values[i] = samples[i * channels];
+        },
+        image.samples);
+    return red;
+}
+
 /// Returns the red channel; holes of float images are filled, and their heights clamped to [0,1].
 Image heights_of(const Image& image, const Wraps& wrap) {
-    Image heights = channel_of(image, 0);
+    Image heights = red_channel(image);
     if (auto* const floats = std::get_if<std::vector<float>>(&heights.samples)) {
         const HeightField field(heights, wrap);
         const glm::dvec2 size(image.width, image.height);
