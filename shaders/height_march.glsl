@@ -10,14 +10,15 @@
 // or stretches.
 
 //@part displacement implements displacement
-// The displaced texture coordinates. Back faces, and surfaces whose normal points away from the eye,
-// are not displaced.
+// The displaced texture coordinates. Surfaces whose interpolated normal points away from the eye are
+// not displaced.
 
 //@include "inputs.glsl#texcoord"
 //@include "inputs.glsl#eye"
+//@include "inputs.glsl#normal"
+//@include "vector.glsl#normalized_or"
 //@include "height_march.glsl#field"
 //@include <position>
-//@include <relief_normal>
 //@include <hit_depth>
 
 vec2 texcoord_right = dFdx(texcoord_surface);
@@ -27,7 +28,7 @@ vec3 position_up = dFdy(position_world);
 
 // Returns k; z is 0 if there is no ray.
 vec3 ray_texels() {
-    vec3 normal = relief_normal();
+    vec3 normal = normalized_or(normal_world, vec3(0.0));
     vec3 view = to_eye(position_world);
     vec2 right = texcoord_right * height_size();
     vec2 up = texcoord_up * height_size();
@@ -77,30 +78,6 @@ vec2 texcoord_displaced_2 = texcoord_surface_2 + second_displacement();
 
 //@neutral displaced_second
 // No texture is looked up at second texture coordinates.
-
-//@part smooth implements relief_normal
-// The interpolated normal.
-
-//@include "inputs.glsl#normal"
-//@include "vector.glsl#normalized_or"
-
-vec3 relief_normal() { return normalized_or(normal_world, vec3(0.0)); }
-
-//@part facet implements relief_normal
-// The normal of the triangle's plane, on the side of the eye; none on back faces.
-
-//@include "inputs.glsl#eye"
-//@include "vector.glsl#normalized_or"
-//@include "vector.glsl#rescaled"
-//@include <position>
-
-vec3 relief_facet = cross(rescaled(dFdx(position_world)), rescaled(dFdy(position_world)));
-
-vec3 relief_normal() {
-    vec3 normal = normalized_or(rescaled(relief_facet), vec3(0.0));
-    if (!gl_FrontFacing) return vec3(0.0);
-    return dot(normal, to_eye(position_world)) < 0.0 ? -normal : normal;
-}
 
 //@part field
 // The heights. Level 0 of the texture has the heights, level n the maxima of its patches: a patch
@@ -180,9 +157,10 @@ float hit_depth(vec2 p, vec2 k) { return bisected(p, k, depths_around(p, k)); }
 uniform sampler2D cone_texture;
 uniform float height_layers;
 
-// Returns the ratio of radius to depth of the cone at a point, both in texels.
+// Returns the ratio of radius to depth of the cone at a point, both in texels. Cone maps have two
+// channels, which are looked up as gray and alpha.
 float cone_at(vec2 p) {
-    float root = textureLod(cone_texture, p / height_size(), 0.0).g;
+    float root = textureLod(cone_texture, p / height_size(), 0.0).a;
     vec2 size = height_size();
     return root * root * max(size.x, size.y) / max(height_depth, 1e-9);
 }
@@ -195,8 +173,8 @@ float hit_depth(vec2 p, vec2 k) {
         if (above <= 0.0) break;
         float cone = cone_at(p + k * around.y);
         // A cone of no width stops the ray.
-        float step = cone > 0.0 ? cone * above / (slant + cone) : 0.0;
-        around = vec2(around.y, min(around.y + step, height_depth));
+        float deeper = cone > 0.0 ? cone * above / (slant + cone) : 0.0;
+        around = vec2(around.y, min(around.y + deeper, height_depth));
     }
     return bisected(p, k, around);
 }

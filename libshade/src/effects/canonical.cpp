@@ -67,7 +67,6 @@ Features unlit_only(const Features& f) {
     result.alpha = f.alpha;
     result.opacity_texture = f.opacity_texture;
     result.second_texcoords = f.second_texcoords;
-    result.interpolation = Interpolation::per_pixel;
     keep_depth_mapping(f, result);
     result.output = f.output;
     result.tone_mapping = f.tone_mapping;

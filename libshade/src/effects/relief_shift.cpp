@@ -101,7 +101,6 @@ std::optional<double> relief_shift(const Scene& scene, const Instance& instance,
     if (!settings.camera || instance.pose || mesh.texcoords.empty()) return std::nullopt;
     const std::optional<glm::dvec2> size = size_of(scene.images[map.texture.image]);
     if (!size) return std::nullopt;
-    const bool is_flat = scene.materials[*range.material].interpolation == Interpolation::flat;
 
     const Screen screen = screen_of(*settings.camera, settings);
     const glm::dmat4 world_from_object(instance.world_from_object);
@@ -123,7 +122,7 @@ std::optional<double> relief_shift(const Scene& scene, const Instance& instance,
                 screen.view_from_world *
                 (world_from_object * glm::dvec4(glm::dvec3(mesh.positions[vertex]), 1.0)));
             texels.at(at) = *size * glm::dvec2(mesh.texcoords[vertex]);
-            if (!is_flat && !mesh.normals.empty())
+            if (!mesh.normals.empty())
                 seen.normals.at(at) = of_normals * glm::dvec3(mesh.normals[vertex]);
         }
         const glm::dvec3 across =
@@ -134,10 +133,6 @@ std::optional<double> relief_shift(const Scene& scene, const Instance& instance,
         const double area_texels = std::abs(a.x * b.y - a.y * b.x);
         // Without an area in the map, nothing is displaced.
         if (!(area_texels > 0.0) || !(area_world > 0.0)) continue;
-        if (is_flat) {
-            const glm::dvec3 view = screen.is_orthographic ? glm::dvec3(0, 0, 1) : -seen.corners[0];
-            seen.normals.fill(glm::dot(across, view) < 0.0 ? -across : across);
-        }
         const double depth_world =
             static_cast<double>(map.depth) * std::sqrt(area_world / area_texels);
         bound = std::max(bound, shift_of(screen, seen, depth_world));

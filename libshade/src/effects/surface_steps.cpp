@@ -100,8 +100,8 @@ bool passes_position(By f) {
            has_derived_frame(f) || is_displaced(f) || (here.normal && is_flat(f));
 }
 bool passes_normal(By f) {
-    const bool is_needed = fragment_needs(f).normal || is_displaced(f);
-    return has_frame(f) || vertex_needs(f).normal || (is_needed && !is_flat(f));
+    return has_frame(f) || is_displaced(f) || vertex_needs(f).normal ||
+           (fragment_needs(f).normal && !is_flat(f));
 }
 bool passes_texcoord(By f) {
     bool is_looked_up = false;
@@ -251,8 +251,6 @@ void choose_displacement(ShaderSteps& steps, By f) {
     choose(steps, {{"inputs.glsl#position", true},
                    {"height_march.glsl#displacement", is_displaced(f)},
                    {"height_march.glsl#second", is_displaced(f) && f.second_texcoords != 0},
-                   {"height_march.glsl#smooth", is_displaced(f) && !is_flat(f)},
-                   {"height_march.glsl#facet", is_displaced(f) && is_flat(f)},
                    {"height_march.glsl#parallax", uses(DepthMapping::parallax)},
                    {"height_march.glsl#parallax_occlusion", uses(DepthMapping::parallax_occlusion)},
                    {"height_march.glsl#relief_mapping", uses(DepthMapping::relief_mapping)},

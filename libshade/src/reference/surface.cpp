@@ -576,10 +576,8 @@ void displace(const PreparedScene& prepared, const Hit& hit, const Material& mat
     const Triangle triangle = triangle_of(prepared, hit);
     const glm::dvec3 view =
         glm::dvec3(prepared.eye_world) - prepared.eye_world.w * surface.position_world;
-    const bool is_flat = material.interpolation == Interpolation::flat;
     const glm::dvec3 normal =
-        is_flat ? front_of_plane(triangle)
-                : direction_or_zero(triangle.interpolated(triangle.instance.normals_world));
+        direction_or_zero(triangle.interpolated(triangle.instance.normals_world));
     const auto along = texels_per_depth(triangle, normal, view, glm::dvec2(relief->size()));
     if (!along) return;
     HeightRay ray;

@@ -109,8 +109,8 @@ struct ReliefMap {
     int layers = HeightMarch{}.layers;
     int bisections = HeightMarch{}.bisections;
     int max_steps = HeightMarch{}.max_steps;
-    /// The cone map, which relaxed cones need; of the same size. Green is the root of the ratio of
-    /// a cone's radius to its height, as fractions of the map's larger side and of the depth.
+    /// The cone map of two channels, which relaxed cones need. The second one is the root of the
+    /// ratio of a cone's radius to its height: fractions of the map's larger side and the depth.
     std::optional<Texture> cones = std::nullopt;
 };
 
