@@ -102,7 +102,10 @@ Json json_of(const PagePicture& p, const PagePictureName& name) {
 }
 
 Json json_of(const PageStage& stage) {
-    return {{"head", stage.head}, {"main", stage.main}, {"steps", Json(stage.steps)}};
+    return {{"head", stage.head},
+            {"main", stage.main},
+            {"steps", Json(stage.steps)},
+            {"second", stage.second_texcoords}};
 }
 
 Json json_of(const PageProgram& program) {

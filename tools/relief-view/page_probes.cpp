@@ -4,7 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
 #include <string>
+
+#include "window/probe_figure.h"
 
 namespace relief::tools {
 using namespace relief::shade;
@@ -31,6 +36,41 @@ Json vectors_json(const ProbeLayer& layer) {
         list.push_back({label_of(layer, vector), json_of(vector.world)});
     }
     return list;
+}
+
+/// The lobe of the first highlight of a layer: {"axis": the mirrored light, "shares"}. Row i of the
+/// shares has the directions at the angle pi (i / last row)^2 from the axis, counter-clockwise.
+Json lobe_json(const Probe& probe, const ProbeLayer& layer) {
+    constexpr int rows = 9;
+    constexpr int columns = 12;
+    const auto term = std::find_if(probe.terms.begin(), probe.terms.end(), [&](const auto& each) {
+        return each.kind == ProbeTermKind::highlight && each.layer &&
+               &probe.layers[*each.layer] == &layer;
+    });
+    if (term == probe.terms.end()) return {};
+    const std::optional<HighlightLobe> lobe = HighlightLobe::of(layer, *term);
+    const auto mirrored =
+        std::find_if(layer.vectors.begin(), layer.vectors.end(), [&](const ProbeVector& vector) {
+            return vector.symbol == "r" && vector.light == term->light && !vector.corner;
+        });
+    if (!lobe || mirrored == layer.vectors.end() || mirrored->world == glm::dvec3(0.0)) return {};
+    const glm::dvec3 z = mirrored->world;
+    const glm::dvec3 x = glm::normalize(
+        glm::cross(std::abs(z.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0), z));
+    const glm::dvec3 y = glm::cross(z, x);
+    Json shares = Json::array();
+    for (int row = 0; row < rows; ++row) {
+        const double polar = std::numbers::pi * row * row / ((rows - 1) * (rows - 1));
+        Json ring = Json::array();
+        for (int column = 0; column < columns; ++column) {
+            const double turn = 2.0 * std::numbers::pi * column / columns;
+            const glm::dvec3 direction =
+                std::sin(polar) * (std::cos(turn) * x + std::sin(turn) * y) + std::cos(polar) * z;
+            ring.push_back(std::round(100.0 * lobe->at(direction)) / 100.0);
+        }
+        shares.push_back(std::move(ring));
+    }
+    return {{"axis", json_of(z)}, {"shares", std::move(shares)}};
 }
 
 std::string text_of(const ProbedPixel& pixel, const Scene& scene) {
@@ -71,6 +111,7 @@ Json page_probe_json(const ProbedPixel& pixel, const Scene& scene) {
             {"y", probe.y},
             {"at", json_of(layer->position_world)},
             {"vectors", vectors_json(*layer)},
+            {"lobe", lobe_json(probe, *layer)},
             {"text", text_of(pixel, scene)},
             {"terms", terms},
             {"radiance", json_of(probe.radiance)},

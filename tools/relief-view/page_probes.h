@@ -14,9 +14,10 @@ namespace relief::tools {
 /// --page-probes cells.
 std::vector<glm::ivec2> page_probe_places(const ViewOptions& options, const glm::ivec2& size);
 
-/// Returns a pixel as pages show it: {"x", "y", "at", "vectors", "text", "terms", "radiance",
-/// "codes"}; "at" is the first visible point in world space, and "vectors" are [label, direction]
-/// there. Null if no surface is visible.
+/// Returns a pixel as pages show it: {"x", "y", "at", "vectors", "lobe", "text", "terms",
+/// "radiance", "codes"}; "at" is the first visible point in world space, "vectors" are [label,
+/// direction] there, and "lobe" is that of its first highlight, or null. Null if no surface is
+/// visible.
 Json page_probe_json(const ProbedPixel& pixel, const shade::Scene& scene);
 
 }  // namespace relief::tools

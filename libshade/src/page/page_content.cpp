@@ -137,6 +137,19 @@ GLint level_parameter(const gl::Api& api, GLenum target, GLint level, GLenum par
     return value;
 }
 
+/// The names between "texture(" and ", texcoord_surface_2", in their order.
+std::vector<std::string> samplers_at_second_texcoords(std::string_view text) {
+    constexpr std::string_view call = "texture(";
+    constexpr std::string_view coordinates = ", texcoord_surface_2";
+    std::vector<std::string> samplers;
+    for (std::size_t end = text.find(coordinates); end != std::string_view::npos;
+         end = text.find(coordinates, end + 1)) {
+        const std::size_t begin = text.rfind(call, end) + call.size();
+        samplers.emplace_back(text.substr(begin, end - begin));
+    }
+    return samplers;
+}
+
 }  // namespace
 
 std::size_t PageContent::section(std::vector<std::byte> bytes) {
@@ -160,7 +173,8 @@ PageStage PageContent::stage(const ShaderSource& source, const ShaderTexts& text
         store(part);
     for (const auto& [step, part] : source.steps)
         store(part);
-    return {source.text.substr(0, source.head_size), source.main, source.steps};
+    return {source.text.substr(0, source.head_size), source.main, source.steps,
+            samplers_at_second_texcoords(source.text)};
 }
 
 std::size_t PageContent::program(const SurfaceProgram& program, const ShaderTexts& texts) {

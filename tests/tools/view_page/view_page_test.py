@@ -167,6 +167,25 @@ class ViewPage(PageTest):
             difference = pages.compared(TOOL, self.window, ["data/vase.obj", *options.split()], self.work / "case", *SIZE)
             self.assertLess(difference["flip_mean"], MAX_FLIP, options)
 
+    def test_draws_second_texture_coordinates(self):
+        content = json.loads(json.dumps(VARIANTS))
+        del content["extensions"], content["extensionsUsed"], content["meshes"][0]["primitives"][0]["extensions"]
+        content["meshes"][0]["primitives"][0]["attributes"] |= {"TEXCOORD_0": 1, "TEXCOORD_1": 2}
+        content["materials"] = [{"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0, "texCoord": 1},
+                                 "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0}}]
+        texels = bytes([255, 0, 0, 255] * 8 + [0, 0, 255, 255] * 8)
+        pages.write_png(self.work / "texels.png", texels, 4, 4)
+        content |= {"textures": [{"source": 0}], "images": [{"uri": "texels.png"}]}
+        content["accessors"] += [{"bufferView": 0, "byteOffset": 36 + 24 * i, "componentType": 5126, "count": 3, "type": "VEC2"}
+                                 for i in range(2)]
+        content["bufferViews"][0]["byteLength"] = content["buffers"][0]["byteLength"] = 84
+        content["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(struct.pack(
+            "<21f", -4, -4, 0, 4, -4, 0, 0, 4, 0, 0, 0, 1, 0, 0, 1, 1, 1, 1, 0, 0, 1)).decode()
+        file = self.scene("second.gltf", content)
+        difference = pages.compared(TOOL, self.window, [file, "--samples", "1"], self.work / "case", *SIZE)
+        self.assertLess(difference["flip_mean"], MAX_FLIP)
+        self.assertGreater(len(self.run_in("return page.page.programs.flatMap((p) => p.fragment.second)")), 0)
+
     def test_offers_material_variants(self):
         self.page("variants.html", self.scene("variants.gltf", VARIANTS), "--samples", "1", "--camera", "0,0")
         self.assertEqual(self.run_in("return [...page.part('variant').options].map((o) => o.value)"),
@@ -417,6 +436,13 @@ class LessonPage(PageTest):
         self.window.wait_for(f"return {pages.ROOT}.relief.part('arrows').children.length > 5")
         labels = self.run_in("return [...page.part('arrows').querySelectorAll('text')].map((t) => t.textContent)")
         self.assertTrue({"n", "v", "l1", "h1", "r1"} <= set(labels), labels)
+        # The lobe has its peak in the direction of the mirrored light.
+        self.run_in("page.probes.choose(page.probes.probes.find((p) => p.lobe))")
+        self.window.wait_for(f"return {pages.ROOT}.relief.part('arrows').querySelector('path[fill-opacity]')")
+        lobe = self.run_in("return page.probes.chosen.lobe")
+        self.assertEqual(lobe["shares"][0], [1] * 12)
+        self.assertLess(lobe["shares"][4][0], 1)
+        self.assertEqual(self.run_in("return page.part('arrows').querySelectorAll('path[fill-opacity]').length"), 8)
         # A click chooses the point below the pointer.
         last = self.run_in("const p = page.probes.probes.at(-1); page.probes.pick(...page.probes.place(p.at)); return page.probes.chosen === p")
         self.assertTrue(last)

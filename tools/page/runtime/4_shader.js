@@ -26,7 +26,9 @@ function assembled(parts, stage) {
     });
   };
   enter(stage.main, [stage.main, 0]);
-  return {text: lines.join('\n'), origins, parts: entered};
+  const at = (sampler) => `texture(${sampler}, texcoord_surface`;
+  const text = stage.second.reduce((all, sampler) => all.replace(at(sampler), `${at(sampler)}_2`), lines.join('\n'));
+  return {text, origins, parts: entered};
 }
 
 // An error with its places: [part, line from 0, message].

@@ -47,7 +47,23 @@ class Probes {
     return w > 0 ? [(0.5 + 0.5 * x / w) * width, (0.5 - 0.5 * y / w) * height] : null;
   }
 
-  // Draws the vectors; those of unit length are a fifth of the picture's height if parallel to it.
+  // The lobe of the highlight as rings of quadrilaterals about its axis (page_probes.cpp).
+  lobe({at, lobe}, length) {
+    if (!lobe) return [];
+    const {axis, shares} = lobe, last = shares.length - 1;
+    const x = unit(cross(Math.abs(axis[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0], axis)), y = cross(axis, x);
+    const places = shares.map((ring, i) => ring.map((share, k) => {
+      const polar = Math.PI * (i / last) ** 2, turn = 2 * Math.PI * k / ring.length, s = Math.sin(polar);
+      const direction = add(add(times(axis, Math.cos(polar)), x, s * Math.cos(turn)), y, s * Math.sin(turn));
+      return this.place(add(at, direction, share * length)) || [0, 0];
+    }));
+    return places.slice(1).map((ring, i) => ring.map((place, k) => {
+      const next = (k + 1) % ring.length;
+      return `M${place}L${ring[next]}L${places[i][next]}L${places[i][k]}Z`;
+    }).join(''));
+  }
+
+  // Draws the lobe and the vectors; those of unit length are a fifth of the picture's height if parallel to it.
   show() {
     const {page, chosen} = this, arrows = page.part('arrows'), from = chosen && this.place(chosen.at);
     arrows.replaceChildren();
@@ -61,6 +77,7 @@ class Probes {
     const camera = page.fitted(page.canvas.clientWidth / page.canvas.clientHeight);
     const depth = dot(add(column(camera.matrix, 3), chosen.at, -1), column(camera.matrix, 2));
     const length = 0.4 * halfHeight(camera) * (camera.height ? 1 : depth);
+    for (const ring of this.lobe(chosen, length)) make('path', {d: ring, fill: '#fff', 'fill-opacity': 0.25, stroke: '#0004'});
     for (const [label, direction] of chosen.vectors) {
       const to = this.place(add(chosen.at, direction, length)), color = colors[label[0]];
       if (!to || !/^[ntbv]$|^[lhr]/.test(label)) continue;
