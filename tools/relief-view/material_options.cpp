@@ -87,7 +87,7 @@ void add_relief_options(CLI::App& app, ViewOptions& options) {
               "strength of the map.")
         .group(maps_group);
     add_field(app, fields, "--height-method", &ReliefMap::method,
-              "Choose the method by which the view meets the relief: see docs/relief-pictures.md. "
+              "Choose the method by which the view meets the relief: see docs/relief-mapping.md. "
               "Default: maximum_mipmaps.")
         .group(maps_group);
     add_field(app, fields, "--height-layers", "N", &ReliefMap::layers,
