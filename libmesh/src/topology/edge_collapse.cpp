@@ -17,6 +17,7 @@
 #include "parallel.h"
 #include "portable_math.h"
 #include "relaxed_store.h"
+#include "topology/collapse_deviation.h"
 #include "topology/edge_collapse_parts.h"
 #include "topology/touched_surface.h"
 #include "topology/triangle_distance.h"
@@ -120,6 +121,7 @@ class Collapser {
     float best_linked_moves(std::uint32_t first, std::vector<LinkedMove>& best) const;
     std::size_t collapse_linked_if_cheap(std::uint32_t first, float limit);
     float evaluate(std::uint32_t vertex, std::size_t& examined) const;
+    bool postpone(std::uint32_t vertex, const Ring& ring, const Move& move, float limit);
     std::size_t collapse(std::uint32_t vertex, const Ring& ring, const Move& move);
     std::size_t collapse_if_cheap(std::uint32_t vertex, const Ring& ring, float limit);
     std::size_t execute(std::span<const std::uint64_t> order, float limit, std::size_t most);
@@ -144,7 +146,12 @@ class Collapser {
     CollapseInput input_;
     std::vector<glm::vec3> original_positions_;  ///< If positions are fitted.
     CollapseSurface surface_;
-    std::optional<CollapseError> error_;  ///< If edges are to collapse.
+    std::optional<CollapseError> error_;          ///< If edges are to collapse.
+    std::optional<CollapseDeviation> deviation_;  ///< If the largest distance counts.
+    double area_ = 0.0;                           ///< Of the input.
+    std::atomic<std::size_t> postponed_ = 0;      ///< The collapses that moved the surface too far.
+    std::size_t more_candidates_ = 0;             ///< Instead of those that a pass has postponed.
+    bool is_before_fit_ = false;  ///< Positions are fitted before the end once more.
     // By vertex:
     std::vector<float> costs_;  ///< CollapseError::priority() of the cheapest collapse.
     std::vector<std::uint8_t> flags_;
@@ -185,6 +192,10 @@ Collapser::Collapser(CollapseInput input) : input_(std::move(input)), surface_(i
     flags_.assign(vertices, 0);
     prepare_normals();
     costs_.assign(vertices, no_collapse);
+    if (!input_.for_picture && !input_.max_error) {
+        deviation_.emplace(input_, surface_,
+                           input_.fits_positions ? original_positions_ : input_.positions);
+    }
     if (!input_.next_at_position.empty()) first_at_position_.assign(vertices, none);
     for (std::uint32_t v = 0; v < first_at_position_.size(); ++v) {
         for (std::uint32_t at = v; first_at_position_[at] == none; at = next_at_position(at))
@@ -217,6 +228,7 @@ void Collapser::add_triangle(std::size_t triangle) {
     const glm::dvec3 cross = cross_of(triangle);
     const double doubled_area = glm::length(cross);
     if (!(doubled_area > 0.0)) return;
+    area_ += doubled_area / 2.0;
     const glm::dvec3 normal = cross / doubled_area;
     for (std::size_t corner = 3 * triangle; corner < 3 * triangle + 3; ++corner)
         mean_normals_[surface_[corner].vertex] += glm::vec3(normal);
@@ -514,9 +526,23 @@ float Collapser::evaluate(std::uint32_t vertex, std::size_t& examined) const {
     return best_move(vertex, ring, move);
 }
 
+/// Raises the cost of a collapse that moves the surface farther than the pass allows.
+bool Collapser::postpone(std::uint32_t vertex, const Ring& ring, const Move& move, float limit) {
+    // The distance is that of the first sample beyond the limit, so the next attempt waits.
+    constexpr float delay = 1.5F;
+    if (!deviation_) return false;
+    const double allowed = deviation_->allowed() * deviation_->allowed();
+    const double squared = deviation_->squared_distance(vertex, ring, move, allowed);
+    if (!(squared > allowed)) return false;
+    costs_[vertex] = std::max(delay * limit, static_cast<float>(deviation_->cost_of(squared)));
+    ++postponed_;
+    return true;
+}
+
 /// \return the number of triangles that it removes
 std::size_t Collapser::collapse(std::uint32_t vertex, const Ring& ring, const Move& move) {
     error_->merge(vertex, move);
+    if (deviation_) deviation_->merge(vertex, move);
     std::size_t removed = 0;
     for (const std::size_t side : {ring.left(move.spoke), ring.right(move.spoke)}) {
         if (side == Ring::no_triangle) continue;
@@ -537,7 +563,7 @@ std::size_t Collapser::collapse_if_cheap(std::uint32_t vertex, const Ring& ring,
     Move move;
     flags_[vertex] &= static_cast<std::uint8_t>(~is_dirty);
     costs_[vertex] = ring.size > 0 ? best_move(vertex, ring, move) : no_collapse;
-    if (!(costs_[vertex] <= limit)) return 0;
+    if (!(costs_[vertex] <= limit) || postpone(vertex, ring, move, limit)) return 0;
     if ((flags_[vertex] & is_careful) == 0 && !is_valid(vertex, ring, move)) {
         costs_[vertex] = no_collapse;
         flags_[vertex] |= is_careful | is_dirty;
@@ -685,12 +711,18 @@ void Collapser::run_pass(double fraction) {
     const std::size_t wanted =
         std::max<std::size_t>((triangles_ - target_ + 1) / (2 * max_count_), 1);
     const auto share = static_cast<std::size_t>(fraction * static_cast<double>(order.size()));
-    const std::size_t count = std::min({order.size(), std::max(share, least), wanted});
+    const std::size_t count =
+        std::min({order.size(), std::max(share, least), wanted + more_candidates_});
     const auto last = order.begin() + static_cast<std::ptrdiff_t>(count - 1);
     std::nth_element(order.begin(), last, order.end());
     const std::uint64_t bound = *last;
     const auto limit = std::bit_cast<float>(static_cast<std::uint32_t>(bound >> 32));
     order.resize(count);
+    if (deviation_) {
+        // A vertex has the area of its triangles, and a cost that of two vertices.
+        const double mean_area = 12.0 * area_ / static_cast<double>(triangles_);
+        deviation_->set_limit(tolerance * limit, mean_area, is_before_fit_);
+    }
     if (count < wanted) {
         // All candidates are executed, and neighbors in memory follow each other.
         order.clear();
@@ -749,11 +781,14 @@ void Collapser::shorten_far_moves(std::vector<Fit>& fits) {
     // short moves are within the limit.
     constexpr double max_distances = 1.5;
     constexpr double rounding = 1e-6;
+    constexpr double max_deviations = 1.0;
     std::vector<std::size_t> long_moves;
     std::vector<Ball> balls;
     for (std::size_t i = 0; i < fits.size(); ++i) {
         const Fit& fit = fits[i];
-        const double limit = std::max(max_distances * error_->plane_distance(fit.vertex), rounding);
+        double limit = max_distances * error_->plane_distance(fit.vertex);
+        if (deviation_) limit = std::min(limit, max_deviations * deviation_->allowed());
+        limit = std::max(limit, rounding);
         if (!(glm::dot(fit.offset, fit.offset) > limit * limit)) continue;
         long_moves.push_back(i);
         balls.push_back({input_.point(fit.vertex) + fit.offset, limit});
@@ -869,13 +904,19 @@ Collapsed Collapser::run() {
         if (next_fit != fitted.end() && triangles_ <= *next_fit) {
             while (next_fit != fitted.end() && triangles_ <= *next_fit)
                 ++next_fit;
+            is_before_fit_ = true;
             fit_positions();
             start_anew();
         }
+        is_before_fit_ = next_fit != fitted.end();
         const std::size_t before = result_.collapses;
+        const std::size_t postponed = postponed_;
         ++result_.passes;
         run_pass(was_checked ? 1.0 : pass_fraction);
         const bool has_success = result_.collapses > before;
+        more_candidates_ = has_success ? 0 : more_candidates_ + postponed_ - postponed;
+        // The costs of what was postponed are larger now, so the next pass has other candidates.
+        if (!has_success && postponed_ > postponed) continue;
         const bool is_stuck = !has_success && (was_checked || checks == max_checks);
         if (is_stuck) {
             // Small parts keep their shape until nothing else is left.
