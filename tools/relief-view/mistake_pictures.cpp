@@ -169,6 +169,10 @@ std::vector<DrawnMistake> draw_mistakes(const ViewOptions& options, const FrameS
 
 std::string cost_text(const DrawnMistake& drawn) {
     if (!drawn.change) return "does not show: " + drawn.reach.hidden;
+    const std::string reach =
+        fmt::format(", on {} of {}", drawn.reach.draws, counted(drawn.reach.total, "surface"));
+    if (drawn.change->difference.differing_pixels == 0)
+        return "changes no pixel that this camera sees" + reach;
     std::string text =
         fmt::format("FLIP {:.3g} (largest {:.3g}), {:.3g} % of the pixels change",
                     drawn.change->flip.mean, drawn.change->flip.max, 100.0 * drawn.changed_share);
@@ -176,8 +180,7 @@ std::string cost_text(const DrawnMistake& drawn) {
         text += fmt::format(", {} off by {:.3g} degrees (99 %: {:.3g}, largest {:.3g})",
                             drawn.vector, drawn.angles->mean, drawn.angles->p99, drawn.angles->max);
     }
-    return text +
-           fmt::format(", on {} of {}", drawn.reach.draws, counted(drawn.reach.total, "surface"));
+    return text + reach;
 }
 
 void add_mistakes(Summary& summary, const ViewOptions& options,

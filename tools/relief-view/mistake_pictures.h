@@ -46,7 +46,8 @@ std::vector<DrawnMistake> draw_mistakes(const ViewOptions& options,
                                         Report& report);
 
 /// For example "FLIP 0.0731 (largest 0.62), 21.3 % of the pixels change, normal off by 9.84 degrees
-/// (99 %: 34.1, largest 36.9), on 1 of 4 surfaces", or "does not show: no surface has ...".
+/// (99 %: 34.1, largest 36.9), on 1 of 4 surfaces", "changes no pixel that this camera sees, on 1
+/// of 4 surfaces", or "does not show: no surface has ...".
 std::string cost_text(const DrawnMistake& drawn);
 
 /// Adds the member "mistakes": [{"name", "what", "shows", "reason", "surfaces", "of", "change",
