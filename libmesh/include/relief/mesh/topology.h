@@ -35,7 +35,8 @@ struct AttributeWeights {
 
 /// The property of the input that a result keeps, which selects the next collapse: the smallest
 /// error to the power of 1.5 times area, so that pictures of all surfaces differ little; or the
-/// smallest squared error times area, so that distances from the input are small.
+/// smallest squared error times area, so that distances from the input are small. Without
+/// `max_error`, the latter also delays collapses that move the surface far in a small place.
 enum class DecimateGoal { picture, distance };
 
 template <>
