@@ -152,7 +152,7 @@ inline Change relief(HeightMethod method) {
     };
 }
 inline const Change maximum_mipmaps = relief(HeightMethod::maximum_mipmaps);
-inline const Change relaxed_cones = relief(HeightMethod::relaxed_cones);
+inline const Change relief_by_cones = relief(HeightMethod::relaxed_cones);
 inline const Change no_cones = [](Frame& f) { f.material().height_map->cones.reset(); };
 inline const Change no_depth = [](Frame& f) { f.material().height_map->depth = 0.0F; };
 
