@@ -84,8 +84,8 @@ __all__ = [
     "BakeMismatch", "Baked", "Cancelled", "Error", "Execution", "FileError", "Finding", "GpuError", "InvalidInput",
     "Mesh", "Scene", "ToolError", "Unwrapped", "__version__", "accuracy", "bake", "blend_normals", "bump", "bump_options",
     "check_mesh", "check_normal_map", "compare_images", "compare_meshes", "compare_normals", "convert_space",
-    "corner_normals", "corner_tangents", "decimate", "decode_normals", "displace", "encode_normals", "fidelity", "flip_green", "heights",
-    "levels_of_detail", "make", "mean_curvatures", "measure_texcoords", "normal_mip_levels", "read_image", "read_mesh",
+    "corner_normals", "corner_tangents", "decimate", "decode_normals", "displace", "encode_normals", "fidelity", "flip_green",
+    "heights", "levels_of_detail", "make", "mean_curvatures", "measure_texcoords", "normal_mip_levels", "read_image", "read_mesh",
     "remesh", "repair", "resize_normals", "run", "scale_slopes", "set_thread_limit", "slopes", "split_vertices", "subdivide", "surface_distance",
     "triangle_normals", "unwrap", "vertex_normals", "vertex_tangents", "with_frames", "write_image", "write_mesh",
     "write_texture",
@@ -299,7 +299,8 @@ def run(tool: str, *arguments: str | os.PathLike[str], report: bool = False) -> 
 
 @_arguments.checks_keywords
 def accuracy(
-    *subjects: Literal["all", "normals", "tangents", "bump", "storage", "bake", "shading", "stability"],
+    *subjects: Literal["all", "normals", "tangents", "bump", "storage", "compression", "bake", "decimation",
+                       "unwrapping", "relief", "shading", "stability"],
     quick: bool = True,
     times: bool = True,
 ) -> dict[str, Any]:

@@ -502,7 +502,7 @@ class Assets(unittest.TestCase):
 
     # Options of the command that are no arguments of make(): the output and the report are those of the function.
     NO_ARGUMENTS = {"--output", "--report", "--job", "--shard", "--force", "--explain", "--help", "--help-json", "--json", "--quiet",
-                    "--strict", "--threads", "--max-memory", "--max-pixels", "--allow-outside"}
+                    "--strict", "--threads", "--max-memory", "--max-pixels", "--allow-outside", "--no-live-view"}
 
     def make_arguments(self):
         return {name: parameter for name, parameter in inspect.signature(relief.make).parameters.items()

@@ -100,7 +100,7 @@ TEST(Help, JsonDescribesCommandsOptionsAndWords) {
     EXPECT_EQ(named(bump.at("options"), "--output").at("short"), "-o");
     EXPECT_EQ(named(bump.at("options"), "--strength").at("value"), "S");
     EXPECT_EQ(named(bump.at("arguments"), "FILE...").at("repeats"), true);
-    EXPECT_EQ(bump.at("examples").size(), 8U);
+    EXPECT_EQ(bump.at("examples").size(), 9U);
 }
 
 TEST(Help, JsonExcludesAllOtherArguments) {

@@ -257,7 +257,9 @@ TEST(SequenceRefusal, StatesTheReasonAndWritesNoFile) {
          {"square.obj --output out/old.png --height-as bump_map", 2,
           "--height-as: needs --height-map"},
          {"square.obj --output out/old.png --height-depth 8", 2,
-          "the scene has no height map to displace by"},
+          "--height-depth, --height-method: the scene has no height map to displace by (give one "
+          "with "
+          "--height-map)"},
          {"square.obj --output out/old.png --height-map h.png --height-layers 8", 2,
           "--height-layers: applies to layers and cones"},
          {"square.obj --output out/old.png --height-map h.png --height-method parallax "

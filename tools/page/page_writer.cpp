@@ -105,7 +105,8 @@ Json json_of(const PageStage& stage) {
     return {{"head", stage.head},
             {"main", stage.main},
             {"steps", Json(stage.steps)},
-            {"second", stage.second_texcoords}};
+            {"second", stage.second_texcoords},
+            {"displaced", stage.is_displaced}};
 }
 
 Json json_of(const PageProgram& program) {

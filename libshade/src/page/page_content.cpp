@@ -137,10 +137,10 @@ GLint level_parameter(const gl::Api& api, GLenum target, GLint level, GLenum par
     return value;
 }
 
-/// The names between "texture(" and ", texcoord_surface_2", in their order.
-std::vector<std::string> samplers_at_second_texcoords(std::string_view text) {
-    constexpr std::string_view call = "texture(";
-    constexpr std::string_view coordinates = ", texcoord_surface_2";
+/// The names between a call and coordinates, such as "texture(" and ", texcoord_surface_2", in
+/// their order.
+std::vector<std::string> samplers_at(std::string_view call, std::string_view coordinates,
+                                     std::string_view text) {
     std::vector<std::string> samplers;
     for (std::size_t end = text.find(coordinates); end != std::string_view::npos;
          end = text.find(coordinates, end + 1)) {
@@ -173,8 +173,11 @@ PageStage PageContent::stage(const ShaderSource& source, const ShaderTexts& text
         store(part);
     for (const auto& [step, part] : source.steps)
         store(part);
+    const bool is_displaced = source.text.find("textureGrad(") != std::string::npos;
     return {source.text.substr(0, source.head_size), source.main, source.steps,
-            samplers_at_second_texcoords(source.text)};
+            is_displaced ? samplers_at("textureGrad(", ", texcoord_displaced_2", source.text)
+                         : samplers_at("texture(", ", texcoord_surface_2", source.text),
+            is_displaced};
 }
 
 std::size_t PageContent::program(const SurfaceProgram& program, const ShaderTexts& texts) {

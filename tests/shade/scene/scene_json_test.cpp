@@ -78,7 +78,7 @@ TEST(SampleScenes, AreReadWithoutAFindingAndMoveSoundly) {
         pose(graph, 1.25);
         EXPECT_NO_THROW(validate(graph));
     }
-    EXPECT_EQ(count, 11U);
+    EXPECT_EQ(count, 12U);
 }
 
 TEST(SampleScenes, TheModelOfEnvironmentMappingScattersAmbientLight) {

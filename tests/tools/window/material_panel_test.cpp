@@ -127,6 +127,7 @@ TEST_F(MapSlots, CanBeSetAndCleared) {
     material.metallic_roughness.emplace();
     for (const TextureSlotInfo& info : texture_slots) {
         EXPECT_FALSE(map_name(scene(), 0, info.slot)) << info.name;
+        if (info.slot == TextureSlot::cones) material.height_map.emplace();
         set_map(scene(), 0, info.slot, file_for(info.slot));
         EXPECT_EQ(map_name(scene(), 0, info.slot), file_for(info.slot).string()) << info.name;
         EXPECT_TRUE(is_map_used(material, info.slot) || info.slot == TextureSlot::specular);
@@ -266,7 +267,9 @@ TEST(MaterialGroups, HaveAnEffectIfTheirValuesChangeThePicture) {
 TEST(MaterialGroups, ContainEveryMapOnce) {
     Material metallic;
     metallic.metallic_roughness.emplace();
-    for (const Material& material : {Material(), metallic}) {
+    Material relief;
+    relief.height_map.emplace();
+    for (const Material& material : {Material(), metallic, relief}) {
         std::vector<TextureSlot> slots;
         for (const MaterialGroup& group : material_groups(material))
             slots.insert(slots.end(), group.slots.begin(), group.slots.end());

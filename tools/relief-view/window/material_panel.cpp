@@ -72,6 +72,7 @@ bool is_map_used(const Material& material, TextureSlot slot) {
     if (slot == TextureSlot::base_color || slot == TextureSlot::opacity) return true;
     if (material.unlit) return false;
     if (slot == TextureSlot::specular) return !material.metallic_roughness;
+    if (slot == TextureSlot::cones) return material.height_map.has_value();
     if (!is_of_metallic_roughness(info)) return true;
     return material.metallic_roughness.has_value();
 }

@@ -205,6 +205,11 @@ TEST(MaterialTextures, AreFoundSetAndRemovedBySlot) {
         if (has_model) material.metallic_roughness.emplace();
         for (const TextureSlotInfo& slot : texture_slots) {
             EXPECT_EQ(find_texture(material, slot.slot), nullptr) << slot.name;
+            if (slot.slot == TextureSlot::cones) {
+                set_texture(material, slot.slot, {7});
+                EXPECT_EQ(find_texture(material, slot.slot), nullptr) << "without a height map";
+                material.height_map.emplace();
+            }
             set_texture(material, slot.slot, {7});
             const bool can_have_it = has_model || !is_of_metallic_roughness(slot);
             ASSERT_EQ(find_texture(material, slot.slot) != nullptr, can_have_it) << slot.name;
@@ -213,6 +218,7 @@ TEST(MaterialTextures, AreFoundSetAndRemovedBySlot) {
             }
             remove_texture(material, slot.slot);
             EXPECT_EQ(find_texture(material, slot.slot), nullptr) << slot.name;
+            material.height_map.reset();
         }
     }
 }
