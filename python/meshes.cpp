@@ -387,7 +387,7 @@ py::tuple py_decimated(const MeshObject& mesh, std::optional<std::size_t> triang
     options.goal = goal        ? value_of<DecimateGoal>(*goal, "goal")
                    : max_error ? DecimateGoal::distance
                                : DecimateGoal::picture;
-    if (options.goal == DecimateGoal::distance && !weights.contains("normals"))
+    if (options.goal != DecimateGoal::picture && !weights.contains("normals"))
         options.weights.normal = 0.0;
     options.frames.normals = value_of<NormalMode>(normals, "normals");
     Report findings;
@@ -732,8 +732,9 @@ void add_mesh_functions(py::module_& module) {
         "angle between a changed triangle and the surface. `keep_borders` and `keep_seams`\n"
         "leave boundaries and seams unchanged. Without `keep_positions`, the vertices that\n"
         "remain move to where the result fits the mesh best. Connected parts that are smaller\n"
-        "than `drop_parts` are removed. `goal` is \"picture\" or \"distance\", the default with\n"
-        "`max_error`, as for `relief-mesh decimate --for`. `weights` has any of \"texcoords\",\n"
+        "than `drop_parts` are removed. `goal` is \"picture\", \"distance\", the default\n"
+        "with `max_error`, or \"largest-distance\", as for `relief-mesh decimate --for`. `weights` "
+        "has any of \"texcoords\",\n"
         "\"normals\" and \"colors\", as for `relief-mesh decimate --weights`. The result is\n"
         "(mesh, source_vertex), with source_vertex as for with_frames().\n\n"
         "Raises InvalidInput for options that are missing or out of range.");

@@ -175,7 +175,7 @@ def decimate(
     keep_seams: bool = False,
     keep_positions: bool = False,
     drop_parts: float = 0.0,
-    goal: Literal["picture", "distance"] | None = None,
+    goal: Literal["picture", "distance", "largest-distance"] | None = None,
     weights: Mapping[Literal["texcoords", "normals", "colors"], float] = {},
     normals: NormalMode = "keep",
     report: Report | None = None,

@@ -58,7 +58,7 @@ DecimateOptions random_decimation(const Mesh& mesh, bool with_distance, Dice& di
     for (double* weight : {&options.weights.texcoord, &options.weights.normal,
                            &options.weights.color, &options.weights.joint, &options.weights.target})
         *weight *= factors[dice.below(4)];
-    options.goal = dice.one_in(2) ? DecimateGoal::picture : DecimateGoal::distance;
+    options.goal = enum_names<DecimateGoal>[dice.below(3)].value;
     if (dice.one_in(3)) options.max_normal_error = dice.one_in(2) ? 0.1 : 0.6;
     options.keep_borders = dice.one_in(3);
     options.keep_seams = dice.one_in(3);

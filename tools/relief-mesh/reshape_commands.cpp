@@ -555,7 +555,7 @@ Json options_json(const DecimateCommand& command) {
 DecimateCommand with_goal(DecimateCommand command) {
     command.options.goal = command.goal.value_or(command.options.max_error ? DecimateGoal::distance
                                                                            : DecimateGoal::picture);
-    if (command.options.goal == DecimateGoal::distance && !command.has_normal_weight)
+    if (command.options.goal != DecimateGoal::picture && !command.has_normal_weight)
         command.options.weights.normal = 0.0;
     return command;
 }
@@ -610,9 +610,11 @@ void add_decimate_options(CLI::App& app, DecimateCommand& command) {
         "of OUT farther than E from IN, in the unit of the scene (relief-mesh info prints "
         "its size). The distance is measured several times, so this takes longer.")
         .group(limits);
-    add_choice(app, "--for", command.goal, enum_choices<DecimateGoal>(),
-               "What OUT is to resemble IN in: in pictures of the scene, where normals count too, "
-               "or in distances. Default: distance with --max-error, otherwise picture.")
+    add_choice(
+        app, "--for", command.goal, enum_choices<DecimateGoal>(),
+        "What OUT is to resemble IN in: in pictures of the scene, where normals count too, "
+        "in distances, or in the largest distance, which takes longer. Default: distance with "
+        "--max-error, otherwise picture.")
         .group("What is preserved");
     const std::string preserved = "What is preserved";
     add_number(app, "--drop-parts", "SIZE", command.options.drop_parts, {0.0, Range().max, ""},

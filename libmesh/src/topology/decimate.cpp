@@ -200,6 +200,7 @@ SceneRemains remains_of(const Scene& scene, const DecimateOptions& options) {
             input.triangles = *options.triangles - std::min(*options.triangles, set_aside);
         if (options.max_error) input.max_error = *options.max_error * scene.scale();
         input.for_picture = options.goal == DecimateGoal::picture;
+        input.for_largest_distance = options.goal == DecimateGoal::largest_distance;
         return input;
     };
     std::vector<Collapsed> collapsed;

@@ -192,7 +192,7 @@ Collapser::Collapser(CollapseInput input) : input_(std::move(input)), surface_(i
     flags_.assign(vertices, 0);
     prepare_normals();
     costs_.assign(vertices, no_collapse);
-    if (!input_.for_picture && !input_.max_error) {
+    if (input_.for_largest_distance && !input_.max_error) {
         deviation_.emplace(input_, surface_,
                            input_.fits_positions ? original_positions_ : input_.positions);
     }

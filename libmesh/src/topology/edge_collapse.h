@@ -68,6 +68,7 @@ struct CollapseInput {
     /// against the shape of a part.
     double attribute_allowance = 0.0;
     bool for_picture = false;              ///< See CollapseError::priority().
+    bool for_largest_distance = false;     ///< See CollapseDeviation.
     std::optional<std::size_t> triangles;  ///< The number of triangles to stop at.
     /// The maximum error of a collapse: the root of its cost divided by the area, in the unit of
     /// the points.

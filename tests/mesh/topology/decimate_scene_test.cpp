@@ -94,7 +94,8 @@ TEST(DecimateScene, FlatMeshesAreReducedFirst) {
 TEST(DecimateScene, LargerInstancesKeepMoreTriangles) {
     const Mesh sphere = bare(make_sphere());
     const std::size_t wanted = sphere.triangles.size() / 2;
-    for (const DecimateGoal goal : {DecimateGoal::picture, DecimateGoal::distance}) {
+    for (const DecimateGoal goal :
+         {DecimateGoal::picture, DecimateGoal::distance, DecimateGoal::largest_distance}) {
         DecimateOptions options = to_triangles(wanted);
         options.goal = goal;
         const SceneResult scene = decimated_scene({sphere, sphere}, {1.0, 8.0}, options);
@@ -198,7 +199,8 @@ TEST(DecimateParts, ACubeKeepsItsCorners) {
 
 TEST(DecimateParts, RoundPartsStayRound) {
     const Mesh sphere = bare(make_sphere());
-    for (const DecimateGoal goal : {DecimateGoal::picture, DecimateGoal::distance}) {
+    for (const DecimateGoal goal :
+         {DecimateGoal::picture, DecimateGoal::distance, DecimateGoal::largest_distance}) {
         DecimateOptions options = to_triangles(4);
         options.goal = goal;
         options.fit_positions = true;

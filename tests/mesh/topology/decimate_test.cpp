@@ -713,8 +713,7 @@ TEST(DecimateFit, HalvesTheDistanceOnCurvedSurfacesAndKeepsTheRest) {
     const FramedMesh subset = decimated(torus, options, report);
     options.fit_positions = true;
     const FramedMesh fitted = decimated(torus, options, report);
-    // Vertices do not move beyond the distance that collapses may have, so it is not quite half.
-    EXPECT_LT(distance_from_torus(fitted.mesh), 0.52 * distance_from_torus(subset.mesh));
+    EXPECT_LT(distance_from_torus(fitted.mesh), 0.5 * distance_from_torus(subset.mesh));
     EXPECT_LE(subset.mesh.triangles.size() - fitted.mesh.triangles.size() + 1, 2U);
     EXPECT_EQ(boundary_edges(fitted.mesh), 0U) << "vertices at one position move together";
     for (std::size_t v = 0; v < fitted.mesh.positions.size(); ++v) {
@@ -769,10 +768,12 @@ TEST(DecimateFit, KeepsTheLargestDistanceSmall) {
     RELIEF_NEEDS_SHARED(file, "data/dense/hammer.obj");
     const Mesh hammer = read_mesh(file).mesh;
     DecimateOptions options;
-    options.goal = DecimateGoal::distance;
+    options.goal = DecimateGoal::largest_distance;
     options.triangles = 6016;
     options.fit_positions = true;
     EXPECT_LT(largest_vertex_distance(hammer, decimated(hammer, options).mesh, 0.0), 0.0055);
+    options.goal = DecimateGoal::distance;
+    EXPECT_GT(largest_vertex_distance(hammer, decimated(hammer, options).mesh, 0.0), 0.0075);
 }
 
 TEST(DecimateFit, FlatFacesEdgesAndCornersDoNotMove) {

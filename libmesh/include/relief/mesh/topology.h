@@ -35,14 +35,16 @@ struct AttributeWeights {
 
 /// The property of the input that a result keeps, which selects the next collapse: the smallest
 /// error to the power of 1.5 times area, so that pictures of all surfaces differ little; or the
-/// smallest squared error times area, so that distances from the input are small. Without
-/// `max_error`, the latter also delays collapses that move the surface far in a small place.
-enum class DecimateGoal { picture, distance };
+/// smallest squared error times area, so that distances from the input are small in the mean. For
+/// the largest distance, collapses that move the surface far in a small place wait, unless
+/// `max_error` limits them.
+enum class DecimateGoal { picture, distance, largest_distance };
 
 template <>
 inline constexpr auto enum_names<DecimateGoal> =
     std::array{EnumName<DecimateGoal>{"picture", DecimateGoal::picture},
-               EnumName<DecimateGoal>{"distance", DecimateGoal::distance}};
+               EnumName<DecimateGoal>{"distance", DecimateGoal::distance},
+               EnumName<DecimateGoal>{"largest-distance", DecimateGoal::largest_distance}};
 
 /// The limits of a decimation; at least one must be given, and the first one that is reached ends
 /// it.
