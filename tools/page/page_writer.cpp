@@ -105,8 +105,7 @@ Json json_of(const PageStage& stage) {
     return {{"head", stage.head},
             {"main", stage.main},
             {"steps", Json(stage.steps)},
-            {"second", stage.second_texcoords},
-            {"displaced", stage.is_displaced}};
+            {"lookups", Json(stage.lookups)}};
 }
 
 Json json_of(const PageProgram& program) {

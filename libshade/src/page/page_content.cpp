@@ -137,17 +137,27 @@ GLint level_parameter(const gl::Api& api, GLenum target, GLint level, GLenum par
     return value;
 }
 
-/// The names between a call and coordinates, such as "texture(" and ", texcoord_surface_2", in
-/// their order.
-std::vector<std::string> samplers_at(std::string_view call, std::string_view coordinates,
-                                     std::string_view text) {
-    std::vector<std::string> samplers;
-    for (std::size_t end = text.find(coordinates); end != std::string_view::npos;
-         end = text.find(coordinates, end + 1)) {
-        const std::size_t begin = text.rfind(call, end) + call.size();
-        samplers.emplace_back(text.substr(begin, end - begin));
-    }
-    return samplers;
+/// Returns the lookups that were changed after the parts were assembled, by the text in the parts
+/// (surface_program.cpp).
+std::map<std::string, std::string> changed_lookups(const std::string& text) {
+    constexpr std::string_view in_parts = ", texcoord_surface";
+    std::map<std::string, std::string> lookups;
+    const auto add = [&](const std::string& call, const std::string& coordinates) {
+        for (std::size_t at = text.find(coordinates); at != std::string::npos;
+             at = text.find(coordinates, at + 1)) {
+            const std::size_t begin = text.rfind(call, at);
+            const std::size_t end = text.find(')', at);
+            const std::size_t sampler = begin + call.size();
+            const std::string name = text.substr(sampler, at - sampler);
+            if (name.find_first_of("(), ;") != std::string::npos) continue;
+            lookups[fmt::format("texture({}{})", name, in_parts)] =
+                text.substr(begin, end + 1 - begin);
+        }
+    };
+    add("texture(", ", texcoord_surface_2)");
+    add("textureGrad(", ", texcoord_displaced,");
+    add("textureGrad(", ", texcoord_displaced_2,");
+    return lookups;
 }
 
 }  // namespace
@@ -173,11 +183,8 @@ PageStage PageContent::stage(const ShaderSource& source, const ShaderTexts& text
         store(part);
     for (const auto& [step, part] : source.steps)
         store(part);
-    const bool is_displaced = source.text.find("textureGrad(") != std::string::npos;
     return {source.text.substr(0, source.head_size), source.main, source.steps,
-            is_displaced ? samplers_at("textureGrad(", ", texcoord_displaced_2", source.text)
-                         : samplers_at("texture(", ", texcoord_surface_2", source.text),
-            is_displaced};
+            changed_lookups(source.text)};
 }
 
 std::size_t PageContent::program(const SurfaceProgram& program, const ShaderTexts& texts) {

@@ -151,8 +151,8 @@ inline Change relief(HeightMethod method) {
         f.material().height_map = map;
     };
 }
-inline const Change maximum_mipmaps = relief(HeightMethod::maximum_mipmaps);
-inline const Change relief_by_cones = relief(HeightMethod::relaxed_cones);
+inline const Change maximum_mipmaps = [](Frame& f) { relief(HeightMethod::maximum_mipmaps)(f); };
+inline const Change relief_by_cones = [](Frame& f) { relief(HeightMethod::relaxed_cones)(f); };
 inline const Change no_cones = [](Frame& f) { f.material().height_map->cones.reset(); };
 inline const Change no_depth = [](Frame& f) { f.material().height_map->depth = 0.0F; };
 

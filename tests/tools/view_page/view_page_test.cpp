@@ -273,10 +273,11 @@ TEST(ViewPage, RefusesMoreRowsThanATextureHolds) {
     file.erase("textures");
     file.erase("materials");
     file["buffers"][0]["byteLength"] = positions.size() * sizeof(float);
-    file["bufferViews"] = {{{"buffer", 0}, {"byteLength", positions.size() * sizeof(float)}}};
-    json& accessor = file["accessors"][0];
+    file["bufferViews"] = json::array(
+        {json::object({{"buffer", 0}, {"byteLength", positions.size() * sizeof(float)}})});
+    json accessor = file["accessors"][0];
     accessor["count"] = side * side;
-    file["accessors"] = {accessor};
+    file["accessors"] = json::array({accessor});
     const json targets(63, json({{"POSITION", 0}}));
     file["meshes"][0] = {
         {"primitives", {{{"attributes", {{"POSITION", 0}}}, {"mode", 5}, {"targets", targets}}}},

@@ -26,10 +26,7 @@ function assembled(parts, stage) {
     });
   };
   enter(stage.main, [stage.main, 0]);
-  const at = (sampler) => `texture(${sampler}, texcoord_surface`;
-  let text = stage.second.reduce((all, sampler) => all.replace(at(sampler), `${at(sampler)}_2`), lines.join('\n'));
-  if (stage.displaced)
-    text = text.replace(/texture\(([^,)]*), texcoord_surface(_2)?\)/g, 'textureGrad($1, texcoord_displaced$2, texcoord_right$2, texcoord_up$2)');
+  const text = Object.entries(stage.lookups).reduce((all, [from, to]) => all.replaceAll(from, to), lines.join('\n'));
   return {text, origins, parts: entered};
 }
 

@@ -80,15 +80,13 @@ struct PageLookup {
 /// A shader in GLSL ES 3.00, to be assembled from PageDescription::parts: the head, then the main
 /// part, whose lines `//@include "ADDRESS"` and `//@include <STEP>` stand for other parts. Each
 /// part enters once. A global variable `TYPE NAME = VALUE;` gets its value where main() begins.
-/// `texture(SAMPLER, texcoord_surface)` of some samplers reads `texcoord_surface_2`. If a stage is
-/// displaced, such lookups then become `textureGrad(SAMPLER, texcoord_displaced, texcoord_right,
-/// texcoord_up)`, or those with `_2`.
+/// Then the lookups are changed.
 struct PageStage {
-    std::string head;                           ///< The version, the precision and constants.
-    std::string main;                           ///< The address of the main part.
-    std::map<std::string, std::string> steps;   ///< The part of each step.
-    std::vector<std::string> second_texcoords;  ///< The samplers that use these.
-    bool is_displaced = false;                  ///< By a height map (shaders/height_march.glsl).
+    std::string head;                          ///< The version, the precision and constants.
+    std::string main;                          ///< The address of the main part.
+    std::map<std::string, std::string> steps;  ///< The part of each step.
+    /// Texts and what stands instead: lookups at second or displaced texture coordinates.
+    std::map<std::string, std::string> lookups;
 
     friend auto operator<=>(const PageStage&, const PageStage&) = default;
 };
