@@ -224,7 +224,7 @@ const ReliefMethod& method_named(const std::vector<ReliefMethod>& methods,
                          [&](const ReliefMethod& one) { return one.name == name; });
 }
 
-/// What the misses mean for the choice of a method.
+/// States what the misses mean for the choice of a method.
 std::string relief_finding(const ReliefInput& input) {
     const std::vector<ReliefMethod> methods = relief_methods();
     const auto errors = [&](const char* name) {

@@ -64,7 +64,7 @@ TEST(MakePage, LeavesTheLiveViewOut) {
     EXPECT_EQ(count_of(workplace.read("out/a.html"), "<iframe"), 0U);
     const ProgramResult useless = workplace.run(line + " --report out/a.json");
     EXPECT_EQ(useless.exit_code, 2);
-    EXPECT_THAT(useless.error, HasSubstr("--no-live-view: there is no page of one asset"));
+    EXPECT_THAT(useless.error, HasSubstr("--no-live-view: needs the report page of one asset"));
 }
 
 TEST_LABELS(not_sanitized);

@@ -19,6 +19,7 @@ FILE_LABELS(cli);
 
 using nlohmann::json;
 using test::expect_refusals;
+using test::part_of;
 using test::picture_in;
 using test::ProgramResult;
 using test::Workplace;
@@ -26,18 +27,6 @@ using testing::HasSubstr;
 using testing::Not;
 
 const std::string scene_line = "relief-view data/scenes/mistakes.json --size 120x38 ";
-
-/// Returns a part of a picture of 8 bits.
-Image part_of(const Image& image, int x, int y, int width, int height) {
-    Image part = make_image(width, height, image.channels, 8, image.color_space);
-    auto to = part.as<std::uint8_t>().begin();
-    for (int row = 0; row < height; ++row) {
-        const auto first =
-            image.as<std::uint8_t>().begin() + ((y + row) * image.width + x) * image.channels;
-        to = std::copy(first, first + width * image.channels, to);
-    }
-    return part;
-}
 
 TEST(MistakeOption, AllMistakesShowInTheirScene) {
     const Workplace workplace;

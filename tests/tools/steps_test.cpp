@@ -16,23 +16,11 @@ FILE_LABELS(cli);
 
 using nlohmann::json;
 using test::expect_refusals;
+using test::part_of;
 using test::picture_in;
 using test::ProgramResult;
 using test::Workplace;
 using testing::HasSubstr;
-
-/// Returns a part of a picture of 8 bits.
-Image columns_of(const Image& image, int first, int width) {
-    Image part = make_image(width, image.height, image.channels, 8, image.color_space);
-    for (int y = 0; y < image.height; ++y) {
-        for (int i = 0; i < width * image.channels; ++i) {
-            part.as<std::uint8_t>()[static_cast<std::size_t>(y * width * image.channels + i)] =
-                image.as<std::uint8_t>()[static_cast<std::size_t>(
-                    (y * image.width + first) * image.channels + i)];
-        }
-    }
-    return part;
-}
 
 TEST(Steps, AreOneStripThatEndsWithThePicture) {
     const Workplace workplace;
@@ -47,15 +35,16 @@ TEST(Steps, AreOneStripThatEndsWithThePicture) {
     EXPECT_EQ(strip.width, 7 * 60);
     EXPECT_EQ(strip.height, 40);
     const Image picture = picture_in(workplace / "out/picture.png");
-    EXPECT_EQ(columns_of(strip, 6 * 60, 60).samples, picture.samples);
-    EXPECT_NE(columns_of(strip, 5 * 60, 60).samples, picture.samples);
+    EXPECT_EQ(part_of(strip, 6 * 60, 0, 60, 40).samples, picture.samples);
+    EXPECT_NE(part_of(strip, 5 * 60, 0, 60, 40).samples, picture.samples);
 
     ASSERT_EQ(workplace.run(line + "step-#.png --steps --json").exit_code, 0);
     EXPECT_EQ(workplace.outputs(),
               "picture.png step-1.png step-2.png step-3.png step-4.png step-5.png step-6.png "
               "step-7.png steps.png");
     EXPECT_EQ(picture_in(workplace / "out/step-7.png").samples, picture.samples);
-    EXPECT_EQ(picture_in(workplace / "out/step-2.png").samples, columns_of(strip, 60, 60).samples);
+    EXPECT_EQ(picture_in(workplace / "out/step-2.png").samples,
+              part_of(strip, 60, 0, 60, 40).samples);
 }
 
 TEST(Steps, AreInTheJsonWithTheirPartsAndChanges) {

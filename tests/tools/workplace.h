@@ -4,6 +4,8 @@
 /// built in release mode, so that commands run as the documents show them; small inputs; refusals.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -99,6 +101,18 @@ inline GltfDocument read_document(const std::filesystem::path& file) {
 
 inline Image picture_in(const std::filesystem::path& file) {
     return read_image(file, ImageUse::color);
+}
+
+/// Returns a part of a picture of 8 bits.
+inline Image part_of(const Image& image, int x, int y, int width, int height) {
+    Image part = make_image(width, height, image.channels, 8, image.color_space);
+    auto to = part.as<std::uint8_t>().begin();
+    for (int row = 0; row < height; ++row) {
+        const auto first =
+            image.as<std::uint8_t>().begin() + ((y + row) * image.width + x) * image.channels;
+        to = std::copy(first, first + width * image.channels, to);
+    }
+    return part;
 }
 
 }  // namespace relief::test

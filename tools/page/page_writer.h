@@ -19,7 +19,7 @@
 
 namespace relief::tools {
 
-/// What a picture of a page shows, for the controls.
+/// The content of a picture of a page, for the controls.
 struct PagePictureName {
     std::string view;
     std::string variant;
@@ -36,7 +36,7 @@ struct PageSplit {
     std::string right;
 };
 
-/// What a page has beside its description.
+/// The parts of a page beside its description.
 struct PageSettings {
     std::string title;
     std::vector<PagePictureName> names;  ///< Of the pictures, in their order; of the first ones.
@@ -48,7 +48,7 @@ struct PageSettings {
     /// those of the first one then.
     std::vector<double> motion_times;
     std::vector<Json> probes;  ///< page_probe_json()
-    /// Of the picture of the command line; narrower windows show as much to the sides.
+    /// The size of the command line's picture; narrower windows show as much to the sides.
     glm::ivec2 size{1, 1};
 };
 

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/options.h"
 #include "common/text.h"
 #include "effect_options.h"
 #include "file_replacement.h"
@@ -225,18 +226,13 @@ std::vector<double> times_of_materials(ViewOptions& options, const FrameSettings
 }  // namespace
 
 void add_page_options(CLI::App& app, ViewOptions& options) {
-    add_value(
-        app, "--page-views", "VIEW,...",
-        "Offer these views of --show in the page (--output page.html), beside the picture. "
-        "docs/page.md describes pages.",
-        [&](const std::string& subject, const std::string& text) {
-            std::size_t begin = 0;
-            while (begin <= text.size()) {
-                const std::size_t end = std::min(text.find(',', begin), text.size());
-                options.page_views.push_back(view_of(subject, text.substr(begin, end - begin)));
-                begin = end + 1;
-            }
-        })
+    add_value(app, "--page-views", "VIEW,...",
+              "Offer these views of --show in the page (--output page.html), beside the picture. "
+              "docs/page.md describes pages.",
+              [&](const std::string& subject, const std::string& text) {
+                  for (const std::string& name : split(text, ','))
+                      options.page_views.push_back(view_of(subject, name));
+              })
         .group("Debug views");
     add_value(
         app, "--page-probes", "WxH",

@@ -302,7 +302,8 @@ ExitCode make(const CLI::App& app, const MakeCommand& command) {
     }
     if (!command.job_file) check_asset_options(app, command.request);
     if (command.no_live_view && !(list.is_single && has_page(command.report)))
-        throw UsageError("--no-live-view: there is no page of one asset", "leave it out");
+        throw UsageError("--no-live-view: needs the report page of one asset",
+                         "add --report FILE.html, or leave it out");
     check_start(command);
     if (command.shard && list.is_single)
         throw UsageError("--shard: divides several assets", "give an output folder with -o");

@@ -137,7 +137,7 @@ class ConeSearch {
                 lowest_ =
                     std::min(lowest_, static_cast<float>(patches.patch(column, row).upper_left));
         }
-        // What is farther away than the maximum radius must not matter.
+        // Texels farther away than the maximum radius must not matter.
         steepest_ = std::max(1.0 / widest, (1.0 - lowest_) / max_radius);
     }
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "effects/light_rows.h"
@@ -602,6 +603,8 @@ Decision of_depth_mapping(Subject s, HeightMethod method) {
     if (method == HeightMethod::relaxed_cones && !map->cones)
         return {false, s.name + " has no cone map"};
     if (!s.relief_shift) return {true, s.name + " has a relief, seen from any distance"};
+    if (std::isinf(*s.relief_shift))
+        return {true, fmt::format("the relief of {} reaches the eye", s.name)};
     const bool on = *s.relief_shift >= min_relief_shift;
     return {on, fmt::format("the relief of {} moves what is seen by at most {:.2g} pixels{}",
                             s.name, *s.relief_shift,

@@ -216,8 +216,8 @@ struct DrawSubject {
 inline constexpr double min_relief_shift = 0.5;
 
 /// Returns an upper bound of the distance, in pixels, by which the material's relief displaces what
-/// the picture shows of some triangles; none if it is not known: without a camera, for a deformed
-/// mesh, if the size of the height map cannot be read, or if the relief reaches the eye.
+/// the picture shows of some triangles; infinite if the relief reaches the eye; none if it is not
+/// known: without a camera, for a deformed mesh, or if the size of the height map cannot be read.
 ///
 /// A point of the relief and the point of the surface above it are at most a depth apart. On the
 /// screen they are as far apart as that distance at the nearest corner, times the sine of the

@@ -37,7 +37,7 @@ std::vector<WrongCode> in_parts(std::initializer_list<std::string_view> parts,
     return code;
 }
 
-/// Whether a mistake shows on a draw whose program or textures it changes.
+/// Returns true if a mistake shows on a draw whose program or textures it changes.
 using Condition = bool (*)(const Scene& scene, const DrawPlan& draw, OutputCoding output);
 
 struct MistakeRow {
@@ -63,7 +63,7 @@ bool is_near(const glm::dmat3& a, const glm::dmat3& b, double size) {
     return true;
 }
 
-/// Is a matrix other than a rotation or mirroring with one scale in all directions?
+/// Returns true if a matrix is not a rotation or mirroring with one scale in all directions.
 bool is_uneven(const Scene& scene, const DrawPlan& draw, OutputCoding) {
     const glm::dmat3 axes = axes_of(scene, draw);
     const glm::dmat3 squared = glm::transpose(axes) * axes;
@@ -71,7 +71,7 @@ bool is_uneven(const Scene& scene, const DrawPlan& draw, OutputCoding) {
     return !is_near(squared, glm::dmat3(mean), mean);
 }
 
-/// Is a matrix other than a scale, the same in all directions?
+/// Returns true if a matrix is not one scale in all directions.
 bool turns_normals(const Scene& scene, const DrawPlan& draw, OutputCoding) {
     const glm::dmat3 axes = axes_of(scene, draw);
     const double scale = (axes[0][0] + axes[1][1] + axes[2][2]) / 3.0;
@@ -82,7 +82,7 @@ bool moves(const Scene& scene, const DrawPlan& draw, OutputCoding) {
     return scene.instances[draw.instance].world_from_object != glm::mat4(1.0F);
 }
 
-/// Is the frame of a corner or a triangle left-handed in object space?
+/// Returns true if the frame of a corner or a triangle is left-handed in object space.
 bool is_left_handed(const Mesh& mesh, std::size_t triangle) {
     const auto& corners = mesh.triangles[triangle];
     if (!mesh.tangents.empty()) {
@@ -97,7 +97,7 @@ bool is_left_handed(const Mesh& mesh, std::size_t triangle) {
     return u.x * v.y - u.y * v.x > 0.0;  // v grows downwards.
 }
 
-/// Does a draw have a left-handed tangent frame in world space?
+/// Returns true if a draw has a left-handed tangent frame in world space.
 bool has_left_handed_frame(const Scene& scene, const DrawPlan& draw, OutputCoding) {
     const Mesh& mesh = *scene.meshes[scene.instances[draw.instance].mesh];
     const bool is_mirrored = glm::determinant(axes_of(scene, draw)) < 0.0;
@@ -107,7 +107,7 @@ bool has_left_handed_frame(const Scene& scene, const DrawPlan& draw, OutputCodin
     return false;
 }
 
-/// Does the picture have sRGB codes?
+/// Returns true if the picture has sRGB codes.
 bool is_coded(const Scene&, const DrawPlan&, OutputCoding output) {
     return output == OutputCoding::srgb;
 }
@@ -255,7 +255,7 @@ void for_each_color_texture(MaterialLike& material, const Visit& visit) {
     }
 }
 
-/// Is an image without sRGB codes, as far as that is known before it is read?
+/// Returns true if an image is known to have no sRGB codes before it is read.
 bool is_linear(const ImageSource& source) {
     if (const auto* image = std::get_if<Shared<Image>>(&source.source))
         return (**image).color_space != ColorSpace::srgb;
@@ -263,7 +263,7 @@ bool is_linear(const ImageSource& source) {
     return file != nullptr && (file->extension() == ".exr" || file->extension() == ".hdr");
 }
 
-/// Does a draw sample a texture of sRGB colors?
+/// Returns true if a draw samples a texture of sRGB colors.
 bool shows_colors(const Scene& scene, const DrawPlan& draw) {
     if (!draw.range.material) return false;
     const std::vector<std::string> samplers = planned_interface(draw.features).samplers;

@@ -136,7 +136,7 @@ std::optional<double> relief_shift(const Scene& scene, const Instance& instance,
         const double depth_world =
             static_cast<double>(map.depth) * std::sqrt(area_world / area_texels);
         bound = std::max(bound, shift_of(screen, seen, depth_world));
-        if (!std::isfinite(bound)) return std::nullopt;
+        if (!std::isfinite(bound)) return bound;
     }
     return bound;
 }

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -93,7 +93,8 @@ std::vector<Sample> patch_maxima(const std::vector<Sample>& heights, int width, 
 }  // namespace
 
 std::vector<Image> height_levels(const Image& image, Wrap wrap_u, Wrap wrap_v) {
-    std::vector<Image> levels{heights_of(image, {wrap_u, wrap_v})};
+    Image map = heights_of(image, {wrap_u, wrap_v});
+    std::vector<Image> levels(1);
     std::visit(
         [&]<typename Sample>(const std::vector<Sample>& heights) {
             int width = image.width;
@@ -110,7 +111,8 @@ std::vector<Image> height_levels(const Image& image, Wrap wrap_u, Wrap wrap_v) {
                 levels.push_back(std::move(level));
             }
         },
-        std::vector<Image>(levels).front().samples);
+        map.samples);
+    levels.front() = std::move(map);
     return levels;
 }
 

@@ -315,6 +315,9 @@ TEST(ReliefBound, IsTheLargestShiftOnTheScreen) {
     above.camera->orthographic_height = 4.0F;
     EXPECT_FALSE(planned(above).on);
     EXPECT_TRUE(planned(relief_scene(hills(64, 64), camera_at(0.0), 8.0F)).on);
+    const Scene deep = relief_scene(hills(64, 64), camera_at(60.0), 1000.0F);
+    EXPECT_TRUE(planned(deep).on);
+    EXPECT_THAT(planned(deep).reason, HasSubstr("reaches the eye"));
     // A camera that is not known may be near.
     Scene unknown = far;
     unknown.camera.reset();

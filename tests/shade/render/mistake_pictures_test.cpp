@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What mistakes cost: angles in closed form, and that a mistake without surfaces changes no pixel.
+// The costs of mistakes are angles in closed form, and a mistake without surfaces changes no pixel.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -79,7 +79,7 @@ class MistakeChoice {
         std::optional<DrawnMistake> cost;
     };
     [[nodiscard]] bool is_working() const;
-    /// What a cost depends on.
+    /// The values that a cost depends on.
     struct Subject {
         const shade::Mistake* mistake = nullptr;
         std::uint64_t revision = 0;

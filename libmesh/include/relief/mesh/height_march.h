@@ -77,8 +77,8 @@ struct HeightHit {
     /// is (-slope.x, -slope.y, 1).
     glm::dvec2 slope{0.0};
     HeightRayEnd end = HeightRayEnd::left;
-    /// Of first_hit(): patches visited. Of march(): texels or filtered values that are read, where
-    /// a value that is needed twice counts once, and a patch of four texels as four.
+    /// first_hit() counts the patches that it visits; march() the texels or filtered values that it
+    /// reads, where a value that is needed twice counts once, and a patch of four texels as four.
     int lookups = 0;
 };
 
