@@ -41,7 +41,9 @@ Image heights_of(const Image& image, const Wraps& wrap) {
         const glm::dvec2 size(image.width, image.height);
         for (std::size_t i = 0; i < floats->size(); ++i) {
             const auto width = static_cast<std::size_t>(image.width);
-            const glm::dvec2 texel(static_cast<double>(i % width), static_cast<double>(i / width));
+            const std::size_t x = i % width;
+            const std::size_t y = i / width;
+            const glm::dvec2 texel(x, y);
             (*floats)[i] = static_cast<float>(field.height((texel + 0.5) / size));
         }
     }
