@@ -51,7 +51,7 @@ std::string shell_line(const std::vector<std::string>& words);
 /// The folder of a farm.
 class FarmFolder {
   public:
-    FarmFolder(std::filesystem::path folder, const FarmJobs& jobs);
+    FarmFolder(const std::filesystem::path& folder, const FarmJobs& jobs);
 
     /// Writes the scripts of all tasks. \throws FileError
     void write_scripts() const;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 
@@ -71,7 +72,7 @@ std::filesystem::path arrays_file(const FarmFolder& folder) {
 
 }  // namespace
 
-FarmFolder::FarmFolder(std::filesystem::path folder, const FarmJobs& jobs)
+FarmFolder::FarmFolder(const std::filesystem::path& folder, const FarmJobs& jobs)
     : folder_(std::filesystem::absolute(folder)), jobs_(jobs) {}
 
 std::filesystem::path FarmFolder::place(const char* kind, std::size_t task,
