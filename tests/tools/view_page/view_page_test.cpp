@@ -304,20 +304,25 @@ void expect_equal_pictures(const std::string& arguments) {
 
 TEST_LABELS(not_sanitized);
 TEST(ViewPage, WorksInABrowser) {
-    expect_equal_pictures("few ViewPage");
+    expect_equal_pictures("few '' ViewPage");
 }
 
 TEST_LABELS(not_sanitized);
 TEST(ViewPage, TeachesInABrowser) {
-    expect_equal_pictures("few LessonPage");
+    expect_equal_pictures("few '' LessonPage");
 }
 
-TEST_LABELS(slow, not_sanitized);
-TEST(ViewPage, ShowsAllScenesInABrowser) {
-    expect_equal_pictures("all '" + test::shared_directory().string() +
+/// Every fourth of all scenes and models, from one of them on.
+class PageSweep : public testing::TestWithParam<int> {};
+
+TEST_LABELS(slow, sweep, not_sanitized);
+TEST_P(PageSweep, ShowsScenesInABrowser) {
+    expect_equal_pictures(std::to_string(GetParam()) + "/4 '" + test::shared_directory().string() +
                           "' ViewPage.test_draws_the_same_picture "
                           "ViewPage.test_deforms_as_the_renderer_does");
 }
+
+INSTANTIATE_TEST_SUITE_P(Parts, PageSweep, testing::Range(0, 4));
 
 }  // namespace
 }  // namespace relief::tools

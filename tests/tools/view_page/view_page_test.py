@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Compares pages with pictures in a headless browser: view_page_test.py TOOL FOLDER few|all
-[SHARED] [TEST...].
+"""Compares pages with pictures in a headless browser: view_page_test.py TOOL FOLDER few|K/N SHARED
+[TEST...].
 
-FOLDER is one in which `relief-view data/vase.obj` has its model; `all` also draws the glTF models of
-SHARED. Exits with 77 without a browser (Debian's chromium and chromium-driver). Run by
-view_page_test.cpp.
+FOLDER is one in which `relief-view data/vase.obj` has its model; K/N draws every Nth of all scenes
+of data and of the glTF models of SHARED, if that is a folder. Exits with 77 without a browser
+(Debian's chromium and chromium-driver). Run by view_page_test.cpp.
 """
 import base64
 import html
@@ -98,12 +98,17 @@ def model(name):
     return sorted((SHARED / "data/models/gltf" / name).rglob("*.gl*"))[0]
 
 
+def part_of(cases):
+    part, parts = map(int, SCOPE.split("/"))
+    return cases[part::parts]
+
+
 def cases():
     if SCOPE == "few":
         return FEW
     scenes = sorted(p for p in (FOLDER / "data/scenes").iterdir() if p.suffix in (".json", ".glb"))
     found = [str(model(name)) for name in MODELS] if SHARED else []
-    return FEW + [str(scene.relative_to(FOLDER)) for scene in scenes] + found
+    return part_of([str(scene.relative_to(FOLDER)) for scene in scenes] + found)
 
 
 class PageTest(unittest.TestCase):
@@ -245,7 +250,7 @@ class ViewPage(PageTest):
         self.assertLess(result["comparison"]["flip_mean"], MAX_FLIP)
 
     def test_deforms_as_the_renderer_does(self):
-        for name in MOVING if SHARED else []:
+        for name in part_of(MOVING) if SHARED else []:
             file = self.page("moving.html", model(name), "--time", "0.5", "--shadow", "2", "--size",
                              "{}x{}".format(*SIZE))
             pages.with_mesas_decoding(file)
@@ -486,9 +491,9 @@ class LessonPage(PageTest):
 
 if __name__ == "__main__":
     TOOL, FOLDER, SCOPE = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), sys.argv[3]
-    SHARED = pathlib.Path(sys.argv[4]) if len(sys.argv) > 4 and pathlib.Path(sys.argv[4]).is_dir() else None
+    SHARED = pathlib.Path(sys.argv[4]) if sys.argv[4] and pathlib.Path(sys.argv[4]).is_dir() else None
     if pages.browser.programs() is None:
         print("needs chromium and chromedriver", file=sys.stderr)
         sys.exit(77)
     os.chdir(FOLDER)
-    unittest.main(argv=[sys.argv[0], *sys.argv[4 + (SHARED is not None):]])
+    unittest.main(argv=[sys.argv[0], *sys.argv[5:]])
