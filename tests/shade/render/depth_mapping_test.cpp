@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -213,6 +214,103 @@ TEST_F(DepthMapped, MaximumMipmapsShowTheExactHits) {
             // Derivatives of coordinates in float: 1e-3 of the displacement.
             EXPECT_LT(found.mean, 0.5);
             EXPECT_LT(found.differing, 0.005);
+        }
+    }
+}
+
+/// Two charts that meet at y = 0, between the eye below and what it sees behind. Each half of the
+/// square shows what its own coordinates would show on the whole square: a ray that crosses the
+/// border continues in the map of the chart in which it began. So there is no seam where the map
+/// continues with the heights of the other chart.
+TEST_F(DepthMapped, RaysCrossSeamsInTheMapOfTheirChart) {
+    using Coordinates = glm::vec2 (*)(const glm::vec2& texcoord);
+    const auto with_charts = [](Scene scene, Coordinates near, Coordinates far) {
+        Mesh mesh = scene.meshes[0];
+        const Mesh half = mesh;
+        mesh.positions.insert(mesh.positions.end(), half.positions.begin(), half.positions.end());
+        mesh.normals.insert(mesh.normals.end(), half.normals.begin(), half.normals.end());
+        mesh.texcoords.resize(mesh.positions.size());
+        mesh.tangents.clear();
+        for (const glm::uvec3& triangle : half.triangles)
+            mesh.triangles.push_back(triangle + static_cast<std::uint32_t>(half.positions.size()));
+        mesh.material_ranges[0].triangle_count *= 2;
+        for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+            glm::vec3& position = mesh.positions[i];
+            const bool is_near = i < half.positions.size();
+            position.y = 0.5F * position.y + (is_near ? -1.0F : 1.0F);
+            const glm::vec2 whole = 0.5F + glm::vec2(position.x, -position.y) / 4.0F;
+            mesh.texcoords[i] = (is_near ? near : far)(whole);
+        }
+        scene.meshes[0] = mesh;
+        return scene;
+    };
+    const Coordinates same = [](const glm::vec2& t) { return t; };
+    const Image one = hills(48, 48);
+    Image symmetric = one;  // By quarter turns about its center.
+    for (int y = 0; y < 48; ++y) {
+        for (int x = 0; x < 48; ++x) {
+            const double sum = test::pixel(one, x, y)[0] + test::pixel(one, 47 - y, x)[0] +
+                               test::pixel(one, 47 - x, 47 - y)[0] + test::pixel(one, y, 47 - x)[0];
+            symmetric.as<std::uint16_t>()[static_cast<std::size_t>(48 * y + x)] =
+                static_cast<std::uint16_t>(0.25 * sum);
+        }
+    }
+    struct Case {
+        const char* name;
+        const Image& heights;
+        Wrap wrap;
+        Coordinates near;
+        Coordinates far;
+        bool meets;
+    };
+    for (const Case& c :
+         {Case{"by whole periods", one, Wrap::repeat, same,
+               [](const glm::vec2& t) { return t + glm::vec2(3, -2); }, true},
+          Case{"mirrored", one, Wrap::mirror,
+               [](const glm::vec2& t) { return glm::vec2(t.x, t.y + 0.5F); },
+               [](const glm::vec2& t) { return glm::vec2(t.x, 1.5F - t.y); }, true},
+          Case{"rotated", symmetric, Wrap::repeat, same,
+               [](const glm::vec2& t) { return glm::vec2(1.0F - t.y, t.x); }, true},
+          Case{"with other heights", one, Wrap::repeat, same,
+               [](const glm::vec2& t) { return glm::vec2(0.7F - t.y, t.x); }, false}}) {
+        SCOPED_TRACE(c.name);
+        const Scene plain = relief_scene(c.heights, camera_at(60.0), 6.0F, c.wrap);
+        const Scene charts = with_charts(plain, c.near, c.far);
+        const Scene near = with_charts(plain, c.near, c.near);
+        const Scene far = with_charts(plain, c.far, c.far);
+        const Reference exact = reference_of(charts);
+        EXPECT_LT(apart(charts, exact).differing, 0.005);
+        const std::array drawn = {picture(near), picture(far), picture(charts)};
+        const auto codes = [](const Reference& reference, const Scene& scene) {
+            return as_codes(reference_picture(reference.radiance, scene, OutputCoding::srgb));
+        };
+        const std::array expected = {codes(reference_of(near), near), codes(reference_of(far), far),
+                                     codes(exact, charts)};
+        for (const auto& [of_near, of_far, of_charts] : {drawn, expected}) {
+            int compared = 0;
+            int of_other = 0;  // Not those of the chart.
+            int of_seam = 0;   // Not those of the near chart, beyond the seam.
+            for (int y = 0; y < size; ++y) {
+                for (int x = 0; x < size; ++x) {
+                    if (test::pixel(exact.edges, x, y)[0] > 0.0) continue;
+                    const ReferenceHit& hit = exact.hits[static_cast<std::size_t>(size * y + x)];
+                    if (hit.instance == ReferenceHit::none) continue;
+                    ++compared;
+                    const bool is_near = hit.triangle < 2;
+                    const double code = test::pixel(of_charts, x, y)[0];
+                    const auto differs = [&](const Image& whole) {
+                        return std::abs(code - test::pixel(whole, x, y)[0]) > 2.0 ? 1 : 0;
+                    };
+                    of_other += differs(is_near ? of_near : of_far);
+                    of_seam += is_near ? 0 : differs(of_near);
+                }
+            }
+            EXPECT_GT(compared, size * size / 8);
+            EXPECT_LE(of_other, compared / 500);
+            if (c.meets)
+                EXPECT_LE(of_seam, compared / 500);
+            else
+                EXPECT_GT(of_seam, compared / 5);
         }
     }
 }
