@@ -236,48 +236,62 @@ float patch_depth(vec2 from, vec2 k, ivec2 cell, float begin) {
     return square >= 0.0 && root > 0.0 ? begin - 2.0 * q.x / root : no_exit;
 }
 
+// Returns the level at which the ray goes on: the next one if it has left the parent.
+int level_beyond(ivec2 left, ivec2 cell, int level, int last_level) {
+    ivec2 parents = (left ^ cell) >> (level + 1);
+    return (parents.x | parents.y) != 0 ? min(level + 1, last_level) : level;
+}
+
+// The nodes of the first level are as large as the ray is long, but have at most 8 x 8 patches:
+// larger ones are rarely skipped at once.
+const int max_first_level = 3;
+
+// Loops test at their end, because processors execute them for all pixels of a group until the last
+// one leaves.
 float hit_depth(vec2 p, vec2 k) {
     vec2 from = p - 0.5;
     ivec2 cell = ivec2(floor(from));
-    ivec2 size = textureSize(height_texture, 0);
-    int last_level = int(floor(log2(float(max(size.x, size.y)))));
-    // The nodes of the first level are as large as the ray is long.
+    int last_level = int(floor(log2(float(max(height_texels.x, height_texels.y)))));
     float reach = height_depth * max(abs(k.x), abs(k.y)) + 1.0;
-    int level = min(int(ceil(log2(reach))), last_level);
+    int level = min(int(ceil(log2(reach))), min(max_first_level, last_level));
     float s = 0.0;
-    int left = 0;  // Nodes and patches that the ray has left; every second time it ascends.
     float steps = 0.0;
-    while (steps < height_steps) {
-        while (level > 0 && steps < height_steps) {
+    bool goes_on = true;
+    do {
+        do {
+            if (level > 0) {
+                steps += 1.0;
+                HeightSpan x = height_columns(cell.x, level);
+                HeightSpan y = height_rows(cell.y, level);
+                vec2 leaves = exit_depths(from, k, x, y);
+                float end = min(min(leaves.x, leaves.y), height_depth);
+                float highest = texelFetch(height_texture, ivec2(x.node, y.node), level).r;
+                float top = height_depth * (1.0 - highest);
+                bool passes = end < top;
+                bool stays = !passes && top <= s;  // Rounding must not lead back to a cell.
+                s = max(s, min(top, end));
+                goes_on = steps < height_steps && (!passes || end < height_depth);
+                ivec2 left = cell;
+                vec2 point = from + k * s;
+                if (passes) cell = next_cell(point, k, x, y, leaves);
+                else if (!stays) cell = cell_at(point, x, y);
+                level = passes ? level_beyond(left, cell, level, last_level) : level - 1;
+            }
+        } while (level > 0 && goes_on);
+        if (goes_on) {
             steps += 1.0;
-            HeightSpan x = height_columns(cell.x, level);
-            HeightSpan y = height_rows(cell.y, level);
+            HeightSpan x = patch_span(cell.x);
+            HeightSpan y = patch_span(cell.y);
             vec2 leaves = exit_depths(from, k, x, y);
             float end = min(min(leaves.x, leaves.y), height_depth);
-            float highest = texelFetch(height_texture, ivec2(x.node, y.node), level).r;
-            float top = height_depth * (1.0 - highest);
-            bool passes = end < top;
-            if (passes && end >= height_depth) return height_depth;
-            s = max(s, min(top, end));
-            vec2 point = from + k * s;
-            cell = passes ? next_cell(point, k, x, y, leaves) : cell_at(point, x, y);
-            left += passes ? 1 : 0;
-            level = passes ? min(level + 1 - (left & 1), last_level) : level - 1;
+            float hit = patch_depth(from, k, cell, s);
+            goes_on = hit > end && end < height_depth && steps < height_steps;
+            s = hit <= end ? hit : max(s, end);
+            ivec2 left = cell;
+            cell = next_cell(from + k * s, k, x, y, leaves);
+            level = level_beyond(left, cell, 0, last_level);
         }
-        if (steps >= height_steps) break;
-        steps += 1.0;
-        HeightSpan x = patch_span(cell.x);
-        HeightSpan y = patch_span(cell.y);
-        vec2 leaves = exit_depths(from, k, x, y);
-        float end = min(min(leaves.x, leaves.y), height_depth);
-        float hit = patch_depth(from, k, cell, s);
-        if (hit <= end) return hit;
-        if (end >= height_depth) return height_depth;
-        s = max(s, end);
-        cell = next_cell(from + k * s, k, x, y, leaves);
-        left += 1;
-        level = min(1 - (left & 1), last_level);
-    }
+    } while (goes_on);
     return s;
 }
 
@@ -305,17 +319,25 @@ HeightSpan moved_span(HeightSpan span, int by) {
     return HeightSpan(span.node, span.first + by, span.last + by);
 }
 
-int periods_before(int cell, int period) { return int(floor(float(cell) / float(period))) * period; }
+ivec2 height_texels = textureSize(height_texture, 0);
+vec2 texel_of_height = 1.0 / vec2(height_texels);
+
+// A cell's middle is too far from a border of periods for rounding of the factor to matter.
+int periods_before(int cell, int period, float inverse) {
+    return int(floor((float(cell) + 0.5) * inverse)) * period;
+}
 
 //@part repeated
 // Maps that repeat.
 
 //@include "height_march.glsl#nodes"
 
-int repeated_texel(int texel, int size) { return texel - periods_before(texel, size); }
+int repeated_texel(int texel, int size, float inverse) {
+    return texel - periods_before(texel, size, inverse);
+}
 
-HeightSpan repeated_span(int cell, int size, int level) {
-    int before = periods_before(cell, size);
+HeightSpan repeated_span(int cell, int size, int level, float inverse) {
+    int before = periods_before(cell, size, inverse);
     return moved_span(node_span(cell - before, size, level), before);
 }
 
@@ -338,13 +360,13 @@ HeightSpan clamped_span(int cell, int size, int level) {
 
 //@include "height_march.glsl#nodes"
 
-int mirrored_texel(int texel, int size) {
-    int within = texel - periods_before(texel, 2 * size);
+int mirrored_texel(int texel, int size, float inverse) {
+    int within = texel - periods_before(texel, 2 * size, 0.5 * inverse);
     return within < size ? within : 2 * size - 1 - within;
 }
 
-HeightSpan mirrored_span(int cell, int size, int level) {
-    int before = periods_before(cell, 2 * size);
+HeightSpan mirrored_span(int cell, int size, int level, float inverse) {
+    int before = periods_before(cell, 2 * size, 0.5 * inverse);
     int within = cell - before;
     if (within < size) return moved_span(node_span(within, size, level), before);
     int mirrored = 2 * size - 2 - within;
@@ -360,10 +382,10 @@ HeightSpan mirrored_span(int cell, int size, int level) {
 
 //@include "height_march.glsl#repeated"
 
-int height_column(int x) { return repeated_texel(x, textureSize(height_texture, 0).x); }
+int height_column(int x) { return repeated_texel(x, height_texels.x, texel_of_height.x); }
 
 HeightSpan height_columns(int cell, int level) {
-    return repeated_span(cell, textureSize(height_texture, 0).x, level);
+    return repeated_span(cell, height_texels.x, level, texel_of_height.x);
 }
 
 //@part columns_clamped implements height_columns
@@ -371,10 +393,10 @@ HeightSpan height_columns(int cell, int level) {
 
 //@include "height_march.glsl#clamped"
 
-int height_column(int x) { return clamped_texel(x, textureSize(height_texture, 0).x); }
+int height_column(int x) { return clamped_texel(x, height_texels.x); }
 
 HeightSpan height_columns(int cell, int level) {
-    return clamped_span(cell, textureSize(height_texture, 0).x, level);
+    return clamped_span(cell, height_texels.x, level);
 }
 
 //@part columns_mirrored implements height_columns
@@ -382,10 +404,10 @@ HeightSpan height_columns(int cell, int level) {
 
 //@include "height_march.glsl#mirrored"
 
-int height_column(int x) { return mirrored_texel(x, textureSize(height_texture, 0).x); }
+int height_column(int x) { return mirrored_texel(x, height_texels.x, texel_of_height.x); }
 
 HeightSpan height_columns(int cell, int level) {
-    return mirrored_span(cell, textureSize(height_texture, 0).x, level);
+    return mirrored_span(cell, height_texels.x, level, texel_of_height.x);
 }
 
 //@part rows_repeated implements height_rows
@@ -393,10 +415,10 @@ HeightSpan height_columns(int cell, int level) {
 
 //@include "height_march.glsl#repeated"
 
-int height_row(int y) { return repeated_texel(y, textureSize(height_texture, 0).y); }
+int height_row(int y) { return repeated_texel(y, height_texels.y, texel_of_height.y); }
 
 HeightSpan height_rows(int cell, int level) {
-    return repeated_span(cell, textureSize(height_texture, 0).y, level);
+    return repeated_span(cell, height_texels.y, level, texel_of_height.y);
 }
 
 //@part rows_clamped implements height_rows
@@ -404,10 +426,10 @@ HeightSpan height_rows(int cell, int level) {
 
 //@include "height_march.glsl#clamped"
 
-int height_row(int y) { return clamped_texel(y, textureSize(height_texture, 0).y); }
+int height_row(int y) { return clamped_texel(y, height_texels.y); }
 
 HeightSpan height_rows(int cell, int level) {
-    return clamped_span(cell, textureSize(height_texture, 0).y, level);
+    return clamped_span(cell, height_texels.y, level);
 }
 
 //@part rows_mirrored implements height_rows
@@ -415,8 +437,8 @@ HeightSpan height_rows(int cell, int level) {
 
 //@include "height_march.glsl#mirrored"
 
-int height_row(int y) { return mirrored_texel(y, textureSize(height_texture, 0).y); }
+int height_row(int y) { return mirrored_texel(y, height_texels.y, texel_of_height.y); }
 
 HeightSpan height_rows(int cell, int level) {
-    return mirrored_span(cell, textureSize(height_texture, 0).y, level);
+    return mirrored_span(cell, height_texels.y, level, texel_of_height.y);
 }

@@ -182,8 +182,8 @@ NodeSpan node_span(std::int64_t patch, int count, Wrap wrap, int level) {
     return span;
 }
 
-/// Skips nodes whose maximum the ray does not reach within them, and descends into the others;
-/// after two skipped nodes it ascends [Tevs et al. 2008]. At level 0, the ray is
+/// Skips nodes whose maximum the ray does not reach within them, and descends into the others; it
+/// ascends if the ray leaves the parent of a node [Tevs et al. 2008]. At level 0, the ray is
 /// intersected with the bilinear patch exactly.
 double Marching::maximum_mipmaps(int max_steps) {
     const BilinearHeights& heights = field_.heights;
@@ -201,13 +201,15 @@ double Marching::maximum_mipmaps(int max_steps) {
     };
     auto column = static_cast<std::int64_t>(std::floor(from.x));
     auto row = static_cast<std::int64_t>(std::floor(from.y));
-    // The nodes of the first level are as large as the ray is long.
+    // The nodes of the first level are as large as the ray is long, but have at most 8 x 8 patches:
+    // larger ones are rarely skipped at once.
+    constexpr int max_first_level = 3;
     const double reach = black_depth_ * std::max(std::abs(k_.x), std::abs(k_.y)) + 1.0;
     int level = 0;
-    while (level < last_level && static_cast<double>(std::int64_t{1} << level) < reach)
+    while (level < std::min(last_level, max_first_level) &&
+           static_cast<double>(std::int64_t{1} << level) < reach)
         ++level;
     double depth = 0.0;
-    bool ascends = false;
     for (int i = 0; i < max_steps; ++i) {
         const NodeSpan x = level > 0 ? node_span(column, heights.width(), heights.wraps().x, level)
                                      : NodeSpan{0, column, column + 1};
@@ -221,10 +223,11 @@ double Marching::maximum_mipmaps(int max_steps) {
             const MaximumLevel& maxima = field_.levels[static_cast<std::size_t>(level)];
             const double top = black_depth_ * (1.0 - maxima.at(x.node, y.node));
             if (end >= top) {
+                --level;
+                if (top <= depth) continue;  // Rounding must not lead back to a patch.
                 depth = std::max(depth, std::min(top, end));
                 column = patch_at(from.x + k_.x * depth, x.first, x.last);
                 row = patch_at(from.y + k_.y * depth, y.first, y.last);
-                --level;
                 continue;
             }
         } else {
@@ -239,12 +242,15 @@ double Marching::maximum_mipmaps(int max_steps) {
         }
         if (end >= black_depth_) return black_depth_;
         depth = std::max(depth, end);
+        const std::int64_t left_column = column;
+        const std::int64_t left_row = row;
         column = patch_at(from.x + k_.x * depth, x.first, x.last);
         row = patch_at(from.y + k_.y * depth, y.first, y.last);
         if (leaves_x <= leaves_y) column = k_.x > 0.0 ? x.last : x.first - 1;
         if (leaves_y <= leaves_x) row = k_.y > 0.0 ? y.last : y.first - 1;
-        if (ascends) level = std::min(level + 1, last_level);
-        ascends = !ascends;
+        const bool leaves_parent =
+            (((column ^ left_column) | (row ^ left_row)) >> (level + 1)) != 0;
+        if (leaves_parent) level = std::min(level + 1, last_level);
     }
     is_exceeded_ = true;
     return depth;
