@@ -51,7 +51,14 @@ bool is_preparation(const std::string& command) {
     return starts_with_any(command, {"mkdir ", "cp "});
 }
 
-bool calls_relief(const std::string& command) {
+/// Returns the command without variables that are set for it alone: "NAME=value relief-view ...".
+std::string without_variables(const std::string& command) {
+    static const std::regex variables(R"(^([A-Z_]+=[^ ]* +)+)");
+    return std::regex_replace(command, variables, "");
+}
+
+bool calls_relief(const std::string& line) {
+    const std::string command = without_variables(line);
     return starts_with_any(command, {"relief-", "relief make ", "relief check ",
                                      "build/release/bin/relief", "scripts/", "./scripts/"});
 }
@@ -110,23 +117,26 @@ TEST(ShownCommands, FollowAPromptOrAreInAShellBlock) {
         "```\n"                                 //
         "```sh\n"                               //
         "mkdir -p out\n"                        // 9
+        "A_B=c relief-view a.obj\n"             // 10
+        "A_B=c git clone somewhere\n"           //
         "```\n"                                 //
         "```cpp\n"                              //
         "relief-mesh in code\n"                 //
         "```\n"                                 //
         "```console\n"                          //
-        "$ relief-view a.obj \\\n"              // 15
+        "$ relief-view a.obj \\\n"              // 17
         "      --output b.png\n"                //
-        "relief-view: error: said so\n"         // 17: output that looks like a command
+        "relief-view: error: said so\n"         // 19: output that looks like a command
         "```\n");
-    ASSERT_EQ(commands.size(), 5U);
+    ASSERT_EQ(commands.size(), 6U);
     EXPECT_EQ(commands[0].line, 2);
     EXPECT_EQ(commands[0].text, "relief-mesh info a.obj");
     EXPECT_EQ(commands[1].text, "build/release/bin/relief-bake bump");
     EXPECT_EQ(commands[2].text, "scripts/demo --fast");
     EXPECT_EQ(commands[3].text, "mkdir -p out");
-    EXPECT_EQ(commands[4].line, 15);
-    EXPECT_EQ(commands[4].text, "relief-view a.obj --output b.png");
+    EXPECT_EQ(commands[4].text, "A_B=c relief-view a.obj");
+    EXPECT_EQ(commands[5].line, 17);
+    EXPECT_EQ(commands[5].text, "relief-view a.obj --output b.png");
 }
 
 TEST(ShownCommands, KnowWhichScriptTheyCall) {
@@ -369,10 +379,12 @@ class FreshClone : public FastWorkplace {
     FreshClone() {
         fs::remove_all(*this / "build");
         fs::remove(*this / "out");
+        fs::create_directory_symlink(source_directory() / "shaders", *this / "shaders");
     }
 };
 
-/// A folder with nothing but a copy of the installed samples, which a fresh clone contains, too.
+/// A folder with nothing but a copy of the installed samples and shaders, which a fresh clone
+/// contains, too.
 class CopyOfSamples : public FreshClone {
   public:
     CopyOfSamples() {
