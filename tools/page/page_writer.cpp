@@ -9,6 +9,7 @@
 
 #include "common/html.h"
 #include "common/text.h"
+#include "short_script.h"
 #include "zlib_stream.h"
 
 namespace relief::tools {
@@ -172,90 +173,40 @@ std::string filled(std::string_view text, const std::map<std::string, std::strin
 
 }  // namespace
 
-std::string without_comments(std::string_view code) {
-    std::string result;
-    bool is_comment = false;
-    while (!code.empty()) {
-        const std::size_t end = std::min(code.find('\n'), code.size());
-        std::string_view line = code.substr(0, end);
-        code.remove_prefix(std::min(end + 1, code.size()));
-        line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
-        if (const std::size_t comment = line.find("  // "); comment != std::string_view::npos)
-            line = line.substr(0, comment);
-        is_comment |= line.starts_with("/*");
-        if (!is_comment && !line.empty() && !line.starts_with("//")) {
-            result += line;
-            result += '\n';
-        }
-        if (is_comment && line.ends_with("*/")) is_comment = false;
-    }
-    return result;
-}
-
-std::string without_spaces(std::string_view script) {
-    static constexpr std::string_view separators = "=,;:{}()[]<>?&|*!\n";
-    // A slash after one of these begins a regular expression.
-    static constexpr std::string_view before_pattern = "=,;:{}([?&|!>\n";
-    const auto is_one_of = [](std::string_view set, char c) {
-        return set.find(c) != std::string_view::npos;
-    };
-    std::string result = "\n";
-    char quote = 0;  // The end of the text or regular expression that is open.
-    bool is_class = false;
-    std::vector<int> braces;  // Open braces in each `${...}`.
-    for (std::size_t i = 0; i < script.size(); ++i) {
-        const char c = script[i];
-        const char next = i + 1 < script.size() ? script[i + 1] : '\n';
-        if (quote != 0) {
-            result += c;
-            if (c == '\\') {
-                result += script[++i];
-            } else if (quote == '`' && c == '$' && next == '{') {
-                result += script[++i];
-                braces.push_back(0);
-                quote = 0;
-            } else if (quote == '/' && (c == '[' || c == ']')) {
-                is_class = c == '[';
-            } else if (c == quote && !is_class) {
-                quote = 0;
-            }
-            continue;
-        }
-        if (c == ' ' && (is_one_of(separators, result.back()) || is_one_of(separators, next)))
-            continue;
-        if (is_one_of("'\"`", c) || (c == '/' && is_one_of(before_pattern, result.back())))
-            quote = c;
-        if (!braces.empty()) {
-            braces.back() += (c == '{') - (c == '}');
-            if (braces.back() < 0) {
-                braces.pop_back();
-                quote = '`';
-            }
-        }
-        result += c;
-    }
-    return result.substr(1);
-}
-
 std::string page_script() {
     std::string script;
     for (const PagePart& each : page_parts()) {
-        if (each.name.ends_with(".js")) script += without_spaces(without_comments(each.text));
+        if (each.name.ends_with(".js")) script += each.text;
     }
-    return "(() => {\n'use strict';\n" + script + "})();\n";
+    return "(()=>{'use strict';" + short_script(script) + "})()";
+}
+
+std::string page_frame(const std::string& title, const std::string& data) {
+    return filled(part("page.html"), {{"title", html_escaped(title)},
+                                      {"style", short_style(part("page.css"))},
+                                      {"script", page_script()},
+                                      {"data", data}});
 }
 
 std::string page_html(const PageDescription& page, const PageSettings& settings,
                       const PageQuantization& codes) {
     PageSections sections;
+    const std::map<std::size_t, PackedImage> images = packed_images(page, settings.heights);
     for (std::size_t i = 0; i < page.sections.size(); ++i) {
         const auto quantized = codes.sections.find(i);
-        if (quantized == codes.sections.end()) {
-            sections.add(page.sections[i]);
-        } else {
+        const auto image = images.find(i);
+        if (quantized != codes.sections.end()) {
             sections.add(quantized->second.codes);
+        } else if (image != images.end()) {
+            sections.add(image->second.bytes);
+        } else {
+            sections.add(page.sections[i]);
         }
     }
+    Json textures = list_of(page.textures);
+    for (std::size_t i = 0; i < page.textures.size(); ++i)
+        if (const auto image = images.find(page.textures[i].section); image != images.end())
+            textures[i].update(image->second.fields);
     Json pictures = Json::array();
     for (std::size_t i = 0; i < settings.names.size(); ++i)
         pictures.push_back(json_of(page.pictures.at(i), settings.names[i]));
@@ -270,7 +221,7 @@ std::string page_html(const PageDescription& page, const PageSettings& settings,
                  {"pictures", pictures},
                  {"surfaces", list_of(page.surfaces)},
                  {"meshes", list_of(page.meshes)},
-                 {"textures", list_of(page.textures)},
+                 {"textures", textures},
                  {"samplers", list_of(page.samplers)},
                  {"programs", list_of(page.programs)},
                  {"parts", page.parts},
@@ -288,10 +239,7 @@ std::string page_html(const PageDescription& page, const PageSettings& settings,
     bytes += text + sections.bytes();
     const std::string stream =
         relief::detail::zlib_stream(std::as_bytes(std::span(bytes.data(), bytes.size())));
-    return filled(part("page.html"), {{"title", html_escaped(settings.title)},
-                                      {"style", without_comments(part("page.css"))},
-                                      {"script", page_script()},
-                                      {"data", base64(stream)}});
+    return page_frame(settings.title, base64(stream));
 }
 
 }  // namespace relief::tools

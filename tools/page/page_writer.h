@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/summary.h"
+#include "page_images.h"
 #include "page_quantize.h"
 #include "page_scene.h"
 #include "relief/shade/page.h"
@@ -48,6 +49,8 @@ struct PageSettings {
     /// those of the first one then.
     std::vector<double> motion_times;
     std::vector<Json> probes;  ///< page_probe_json()
+    /// Normal maps that were computed from them are stored as these heights.
+    std::optional<PageHeights> heights;
     /// The size of the command line's picture; narrower windows show as much to the sides.
     glm::ivec2 size{1, 1};
 };
@@ -57,14 +60,11 @@ struct PageSettings {
 std::string page_html(const shade::PageDescription& page, const PageSettings& settings,
                       const PageQuantization& codes = {});
 
-/// Returns a script or style sheet without comments, indentation and empty lines.
-std::string without_comments(std::string_view code);
-
-/// Returns a script without the spaces that only readers need. No text is longer than its line.
-std::string without_spaces(std::string_view script);
-
-/// Returns the page's code: all files of runtime/ but page.html and page.css.
+/// Returns the page's script: all files of runtime/ but page.html and page.css.
 std::string page_script();
+
+/// Returns a page with this data, in base64. Without data it is the page's own code.
+std::string page_frame(const std::string& title, const std::string& data);
 
 /// A file of the folder runtime/.
 struct PagePart {

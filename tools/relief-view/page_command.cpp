@@ -190,6 +190,22 @@ PageSettings page_settings_of(const ViewOptions& options, const ComposedScene& c
     return page;
 }
 
+/// The height map, if it is a normal map, with its conversions: those of both sides.
+std::optional<PageHeights> heights_of(const ViewOptions& options) {
+    if (!options.height_map || options.height_as == HeightUse::bump_map) return std::nullopt;
+    PageHeights heights{read_image(*options.height_map, ImageUse::data), {}};
+    BumpOptions bump;
+    bump.strength = options.strength.value_or(bump.strength);
+    bump.kernel = options.kernel;
+    heights.conversions.push_back(bump);
+    if (!options.compare.variant) return heights;
+    if (const auto* kernel = std::get_if<Kernel>(&*options.compare.variant)) {
+        bump.kernel = *kernel;
+        heights.conversions.push_back(bump);
+    }
+    return heights;
+}
+
 std::vector<Json> probes_of(const ViewOptions& options, const FrameSettings& settings,
                             const ComposedScene& composed, Stages& stages) {
     const std::vector<glm::ivec2> places = page_probe_places(options, options.size);
@@ -274,6 +290,7 @@ WrittenPage write_page(const ViewOptions& given, const FrameSettings& settings,
     if (options.compare.compares()) other = compose_other_side(options, composed, stages);
     PageSettings page_settings = page_settings_of(options, composed, other);
     if (options.steps) page_settings.steps = picture_steps(composed.scene(), settings);
+    page_settings.heights = heights_of(options);
     page_settings.probes = probes_of(options, settings, composed, stages);
     const std::unique_ptr<Context> context =
         stages.run("context", [&] { return std::make_unique<Context>(options.backend); });

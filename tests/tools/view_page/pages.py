@@ -37,12 +37,14 @@ def pixels(window, width, height):
     return b"".join(rows[4 * width * y:4 * width * (y + 1)] for y in reversed(range(height)))
 
 
-def write_png(file, rgba, width, height):
+def write_png(file, samples, width, height, channels=4):
+    """Writes rows of 8-bit gray (channels=1) or RGBA."""
     def chunk(kind, content):
         body = kind + content
         return struct.pack(">I", len(content)) + body + struct.pack(">I", zlib.crc32(body))
-    lines = b"".join(b"\0" + rgba[4 * width * y:4 * width * (y + 1)] for y in range(height))
-    header = struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)
+    size = channels * width
+    lines = b"".join(b"\0" + samples[size * y:size * (y + 1)] for y in range(height))
+    header = struct.pack(">IIBBBBB", width, height, 8, {1: 0, 4: 6}[channels], 0, 0, 0)
     pathlib.Path(file).write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) +
                                    chunk(b"IDAT", zlib.compress(lines, 1)) + chunk(b"IEND", b""))
 
@@ -88,30 +90,28 @@ def read_png(file):
 
 # Mesa's rasterizer, with which the command line draws here, decodes sRGB texels by a cubic
 # polynomial (lp_build_srgb_to_linear), which is up to 0.4 % too bright: 0.2 of an 8-bit code on
-# average, of which FLIP sees up to 0.015. These lines of the runtime, as pages have it, are replaced by ones that
-# decode as it does, so that all other differences show.
-DECODING = """
+# average, of which FLIP sees up to 0.015. This script, before that of the page, uploads such texels
+# as it decodes them, so that all other differences show.
+DECODING = """<script>
 const mesaLight = (c) => (c <= 10.3 ? c / 3294.6 : 0.0023 + 0.003 * c / 255 + 0.6935 * (c / 255) ** 2 + 0.3012 * (c / 255) ** 3);
 const mesaLights = Float32Array.from({length: 256}, (_, c) => mesaLight(c));
-const mesaLinear = (codes, channels) => Float32Array.from(codes, (c, i) => (i % channels === 3 ? c / 255 : mesaLights[c]));
+const {prototype} = WebGL2RenderingContext, {texImage2D} = prototype;
+prototype.texImage2D = function(...all) {
+  if (all[2] === this.SRGB8_ALPHA8)
+    [all[2], all[7], all[8]] = [this.RGBA16F, this.FLOAT,
+                                Float32Array.from(all[8], (c, i) => (i % 4 === 3 ? c / 255 : mesaLights[c]))];
+  return texImage2D.apply(this, all);
+};
+</script>
 """
-REPLACED = [
-    ("class Gpu{", DECODING + "class Gpu{"),
-    ("gl.texImage2D(at,level,gl.SRGB8_ALPHA8,side,side,0,gl.RGBA,gl.UNSIGNED_BYTE,withAlpha(part));",
-     "gl.texImage2D(at, level, gl.RGBA16F, side, side, 0, gl.RGBA, gl.FLOAT, mesaLinear(withAlpha(part), 4));"),
-    ("gl.texImage2D(target,level++,format,width,",
-     "if (isByte && texture.srgb) gl.texImage2D(target, level++, gl.RGBA16F, width, height, 0, gl.RGBA, gl.FLOAT, "
-     "mesaLinear(samples, 4)); else gl.texImage2D(target,level++,format,width,"),
-]
+SCRIPT = "<script>\n"  # Where the script of a page begins.
 
 
 def with_mesas_decoding(page):
     text = pathlib.Path(page).read_text()
-    for old, new in REPLACED:
-        if text.count(old) != 1:
-            raise RuntimeError(f"the runtime has no single line '{old}'")
-        text = text.replace(old, new)
-    pathlib.Path(page).write_text(text)
+    if text.count(SCRIPT) != 1:
+        raise RuntimeError("a page has one script")
+    pathlib.Path(page).write_text(text.replace(SCRIPT, DECODING + SCRIPT))
 
 
 def compared(tool, window, arguments, folder, width, height, page_options=()):

@@ -28,31 +28,18 @@ using test::Workplace;
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(PageScript, HasNoCommentsAndKeepsItsCode) {
-    EXPECT_EQ(without_comments("// Before.\n\n  let a = 1;  // After.\n\tlet b = 'x // y';\n"),
-              "let a = 1;\nlet b = 'x // y';\n");
-    EXPECT_EQ(without_comments("/* One.\n   Two. */\nbody { }\n"), "body { }\n");
-}
-
-TEST(PageScript, LosesOnlySpacesForReaders) {
-    EXPECT_EQ(without_spaces("const {a} = b ? c : 'd, e';\nreturn a + +b;\n"),
-              "const{a}=b?c:'d, e';\nreturn a + +b;\n");
-    EXPECT_EQ(without_spaces("f(`a, ${b ? `, ${ {c : 1} }` : \"x ; y\"} , z`, /[ /]= , \\/ /);\n"),
-              "f(`a, ${b?`, ${{c:1}}`:\"x ; y\"} , z`,/[ /]= , \\/ /);\n");
-    EXPECT_EQ(without_spaces("x = a / b; y = c / d;\n"), "x=a / b;y=c / d;\n");
-}
-
-TEST(PageScript, IsSmall) {
-    const std::string script = page_script();
-    EXPECT_LT(script.size(), 60'000U);
+TEST(PageCode, IsSmall) {
+    const std::string code = page_frame("vase.obj", "");
+    EXPECT_LT(code.size(), 60'000U);
+    EXPECT_GT(code.size(), 40'000U);
     const Workplace workplace;
-    workplace.write("script.js", script);
-    const ProgramResult compressed = workplace.run("gzip -9 -c script.js | wc -c");
+    workplace.write("code.html", code);
+    const ProgramResult compressed = workplace.run("gzip -9 -c code.html | wc -c");
     ASSERT_EQ(compressed.exit_code, 0) << compressed.error;
     EXPECT_LT(std::stoi(compressed.out), 20'000);
     EXPECT_GT(std::stoi(compressed.out), 10'000);
-    EXPECT_THAT(script, Not(HasSubstr("import ")));
-    EXPECT_THAT(script, Not(HasSubstr("fetch(")));
+    EXPECT_THAT(code, Not(HasSubstr("import ")));
+    EXPECT_THAT(code, Not(HasSubstr("fetch(")));
 }
 
 TEST(PageQuantize, KeepsTheEndsAndStatesTheError) {

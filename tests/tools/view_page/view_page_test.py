@@ -13,6 +13,7 @@ import json
 import os
 import pathlib
 import struct
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -274,6 +275,30 @@ class ViewPage(PageTest):
         difference = pages.compared(TOOL, self.window, ["data/vase.obj"], self.work / "case", *SIZE,
                                     page_options=["--page-quantize"])
         self.assertLess(difference["flip_mean"], MAX_FLIP)
+
+    def test_stores_normal_maps_in_less_space(self):
+        # Heights whose left and right borders differ, so that they continue beyond these.
+        width, height = 64, 48
+        heights = bytes(min(255, 2 * x + (60 if (x // 8 + y // 12) % 2 else 0)) for y in range(height) for x in range(width))
+        pages.write_png(self.work / "heights.png", heights, width, height, channels=1)
+        bake = pathlib.Path(TOOL).parent / "relief-bake"
+        subprocess.run([bake, "bump", self.work / "heights.png", "-o", self.work / "normals.png", "--bits", "16", "--quiet"], check=True)
+        vase = ["data/vase.obj", "--show", "shading-normal"]
+        texels = {}
+        for name, field, options in (("central5", "heights", ["--height-map", self.work / "heights.png", "--kernel", "central5"]),
+                                     ("gaussian", "heights", ["--height-map", self.work / "heights.png", "--kernel", "gaussian"]),
+                                     ("file", "z", ["--normal-map", self.work / "normals.png"])):
+            difference = pages.compared(TOOL, self.window, [*vase, *options], self.work / "case", *SIZE)
+            self.assertLess(difference["flip_mean"], MAX_FLIP, name)
+            self.assertLess(difference["pixels_above"] / (SIZE[0] * SIZE[1]), MAX_SHARE, name)
+            texels[name] = self.run_in("const t = page.page.textures.find((t) => arguments[0] in t); return t && Array.from(page.data.spread(t).samples)", field)
+            self.assertEqual(len(texels[name] or []), 4 * width * height, name)
+            if field == "heights":
+                self.assertEqual(self.run_in("return page.page.textures.find((t) => t.heights).heights.wraps[0]"), False)
+        # The slope of the ramp across the left border: the height rises by 2 / 255 of 16 texels.
+        slope = 16 * 2 / 255
+        x, _, z = [value * 65535 / 32767 - 32768 / 32767 for value in texels["central5"][:3]]
+        self.assertAlmostEqual(x / z, -slope, delta=1e-3)
 
     def test_fits_a_phone(self):
         self.page("phone.html", "data/scenes/illumination.json")

@@ -43,21 +43,64 @@ class Data {
     return {width, height, samples};
   }
 
+  // Samples from their differences to the left (tools/page/page_images.cpp).
+  samples({t, w, h, c, d, packed}) {
+    const bytes = this.section(d), count = w * h * c, isWide = t === 'bits_16';
+    if (!packed) return isWide ? new Uint16Array(bytes.buffer, bytes.byteOffset, count) : t === 'floats' ? this.floats(d) : bytes;
+    const samples = new (isWide ? Uint16Array : Uint8Array)(count);
+    for (let i = 0; i < count; ++i)
+      samples[i] = bytes[i] + (isWide ? 256 * bytes[count + i] : 0) + (i % (w * c) < c ? 0 : samples[i - c]);
+    return samples;
+  }
+
   // Four samples per texel of an image that is stored as rows.
   spread(texture) {
-    const bytes = this.section(texture.d);
-    const from = texture.t === 'floats' ? this.floats(texture.d)
-        : texture.t === 'bits_16' ? new Uint16Array(bytes.buffer, bytes.byteOffset, bytes.length / 2) : bytes;
-    const isByte = from === bytes, one = isByte ? 255 : 1, scale = texture.t === 'bits_16' ? 65535 : 1;
-    const count = texture.w * texture.h, c = texture.c;
-    const samples = isByte ? new Uint8Array(4 * count) : new Float32Array(4 * count);
+    const {w, h, c, gray, z, heights} = texture;
+    const from = heights ? normalsOf(this.samples({...texture, ...heights, c: 1}), w, h, heights) : this.samples(texture);
+    const isByte = from instanceof Uint8Array, one = isByte ? 255 : 1, scale = from instanceof Uint16Array ? 65535 : 1;
+    const count = w * h, samples = isByte ? new Uint8Array(4 * count) : new Float32Array(4 * count);
     for (let i = 0; i < count; ++i) {
       const at = (k) => from[c * i + k] / scale;
-      for (let k = 0; k < 3; ++k) samples[4 * i + k] = texture.gray ? at(0) : k < c ? at(k) : 0;
-      samples[4 * i + 3] = c === 4 ? at(3) : texture.gray && c === 2 ? at(1) : one;
+      for (let k = 0; k < 3; ++k) samples[4 * i + k] = gray ? at(0) : k < c ? at(k) : 0;
+      samples[4 * i + 3] = c === 4 ? at(3) : gray && c === 2 ? at(1) : one;
+      if (!z) continue;
+      const [x, y] = [0, 1].map((k) => (at(k) * scale - z[0]) / z[1]);
+      samples[4 * i + 2] = Math.round(z[0] + z[1] * Math.sqrt(Math.max(1 - x * x - y * y, 0))) / scale;
     }
-    return {width: texture.w, height: texture.h, samples};
+    return {width: w, height: h, samples};
   }
+}
+
+// The normal map of heights, by the rule of libmesh/src/bump/bump.cpp in double precision, for borders
+// that repeat or continue: differences use the point reflection beyond them, smoothing the border.
+function normalsOf(heights, w, h, {taps, lines, wraps, scale}) {
+  // The differences and means at each place of an axis: indices with weights.
+  const sums = (n, repeats) => Array.from({length: n}, (_, i) => {
+    const inside = (k) => (repeats ? (k + n) % n : Math.max(0, Math.min(k, n - 1)));
+    const rises = taps.flatMap(([before, after, weight]) => [[before, -weight], [after, weight]].flatMap(([offset, f]) => {
+      const at = i + offset, k = inside(at);
+      return repeats || k === at ? [[k, f]] : [[k, 2 * f], [2 * k - at, -f]];
+    }));
+    return [rises, lines.flatMap((f, k) => (k ? [[inside(i - k), f], [inside(i + k), f]] : [[i, f]]))];
+  });
+  const columns = sums(w, wraps[0]), rows = sums(h, wraps[1]), result = new Uint16Array(3 * w * h);
+  for (let y = 0; y < h; ++y) {
+    const [rises, means] = rows[y].map((list) => {
+      const sum = new Float64Array(w);
+      for (const [at, f] of list) for (let x = 0; x < w; ++x) sum[x] += f * heights[at * w + x];
+      return sum;
+    });
+    for (let x = 0; x < w; ++x) {
+      let right = 0, down = 0;
+      for (const [at, f] of columns[x][0]) right += f * means[at];
+      for (const [at, f] of columns[x][1]) down += f * rises[at];
+      const nx = -scale[0] * right, ny = scale[1] * down, f = 32767 / Math.sqrt(nx * nx + ny * ny + 1), i = 3 * (y * w + x);
+      result[i] = 32768 + Math.round(f * nx);
+      result[i + 1] = 32768 + Math.round(f * ny);
+      result[i + 2] = 32768 + Math.round(f);
+    }
+  }
+  return result;
 }
 
 // Attributes of 16 bits, by the least and the largest value of each component.

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The runtime of pages made small. view_page_test.py runs it in a browser.
+#include "short_script.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace relief::tools {
+namespace {
+
+TEST(ShortScript, HasNoCommentsAndNeedlessSpaces) {
+    EXPECT_EQ(short_script("// Before.\n\n  f(1);  // After.\n/* One.\n Two. */\n\tg('x // y');\n"),
+              "f(1);g('x // y');");
+    EXPECT_EQ(short_script("throw a + +b - -c;\nif (x) return a++ + b / c;\nelse y = 0.5 * z;\n"),
+              "throw a+ +b- -c;if(x)return a++ +b/c;else y=0.5*z;");
+}
+
+TEST(ShortScript, KeepsTextsPatternsAndTemplates) {
+    EXPECT_EQ(
+        short_script(
+            "f(`a, ${b ? `, ${ g({c : 1}) }` : \"x ; y\"} , z`, /[ /]= , \\/ /i , 'it\\'s ');"),
+        "f(`a, ${b?`, ${g({c:1})}`:\"x ; y\"} , z`,/[ /]= , \\/ /i,'it\\'s ');");
+}
+
+TEST(ShortScript, RenamesWhatAPieceDeclares) {
+    EXPECT_EQ(
+        short_script(
+            "function sum(first, second = 2) {\n  const total = first + second, half = total / 2;\n"
+            "  return half;\n}\nconst [left, right] = sum(1);\n"),
+        "function Aa(a,c=2){const d=a+c,b=d/2;return b;}const[Ab,Ac]=Aa(1);");
+}
+
+TEST(ShortScript, KeepsKeysMethodsAndProperties) {
+    // `width` is a key that a short form takes, `size` a method, and `a` a name of its own. `kept`
+    // is before a colon, as keys are.
+    EXPECT_EQ(
+        short_script(
+            "class Box {\n  size(scale, {depth}) {\n    const {width} = this.data, all = [scale, "
+            "width], kept = a;\n    return scale > 1 ? kept : f({size: a, scale: all.scale}, "
+            "...all);\n  }\n}\nnew Box().size(2);\n"),
+        "class Aa{size(scale,{depth}){const{width}=this.data,b=[scale,width],kept=a;"
+        "return scale>1?kept:f({size:a,scale:b.scale},...b);}}new Aa().size(2);");
+    EXPECT_EQ(short_script(
+                  "const code = 1, light = code;\nfunction* f(light) {\n  for (const [at, more] of "
+                  "light) yield at + more + code;\n}\n"),
+              "const Aa=1,Ab=Aa;function*f(Ab){for(const[a,b]of Ab)yield a+b+Aa;}");
+}
+
+TEST(ShortStyle, HasNoCommentsAndNeedlessSpaces) {
+    EXPECT_EQ(short_style("/* One.\n   Two. */\n@media (a: dark) { :root { --x: #fff; } }\n.a b, "
+                          ".c :hover { margin: 0 1em; top: 0; }\n"),
+              "@media (a:dark){:root{--x:#fff}}.a b,.c :hover{margin:0 1em;top:0}");
+}
+
+}  // namespace
+}  // namespace relief::tools
