@@ -99,6 +99,10 @@ void refuse_format(ModelFormat format, const fs::path& output) {
 
 }  // namespace
 
+bool has_model_extension(const std::filesystem::path& file) {
+    return std::ranges::find(formats, extension_of(file), &FormatRow::extension) != formats.end();
+}
+
 ModelFormat readable_format(const std::filesystem::path& file) {
     return format_of(file, false);
 }

@@ -20,6 +20,9 @@ namespace relief::tools {
 
 enum class ModelFormat { gltf, glb, obj, ply, stl, off };
 
+/// Returns whether the name of a file has the extension of a model.
+bool has_model_extension(const std::filesystem::path& file);
+
 /// Returns the format of a file to read or to write. \throws UsageError with the valid extensions
 ModelFormat readable_format(const std::filesystem::path& file);
 ModelFormat writable_format(const std::filesystem::path& file);

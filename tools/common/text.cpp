@@ -218,7 +218,7 @@ namespace {
 
 /// Returns whether a file may be a model or the buffer or material file of one. Commands read and
 /// write such files also if their command line does not name them.
-bool has_model_extension(const std::filesystem::path& file) {
+bool belongs_to_model(const std::filesystem::path& file) {
     static constexpr std::array<std::string_view, 8> models = {".glb", ".gltf", ".bin", ".obj",
                                                                ".mtl", ".ply",  ".stl", ".off"};
     return std::find(models.begin(), models.end(), extension_of(file)) != models.end();
@@ -232,7 +232,7 @@ void check(const ReportOptions& options, const std::vector<std::filesystem::path
     check_distinct("--report", *options.file, files);
     const std::filesystem::path target = identity_of(*options.file);  // A link is followed.
     for (const std::filesystem::path& file : {*options.file, target}) {
-        if (!has_model_extension(file) && !has_image_extension(file)) continue;
+        if (!belongs_to_model(file) && !has_image_extension(file)) continue;
         const std::string place = std::filesystem::is_symlink(*options.file)
                                       ? fmt::format("is a link to {}, ", target.string())
                                       : "is ";

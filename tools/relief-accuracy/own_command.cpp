@@ -65,11 +65,6 @@ constexpr int default_map_size = 256;
 constexpr std::size_t quick_triangles = std::size_t{1} << 17;
 constexpr std::int64_t quick_texels = std::int64_t{1} << 18;
 
-bool is_model(const std::filesystem::path& file) {
-    constexpr std::array extensions = {".gltf", ".glb", ".obj", ".ply", ".stl", ".off"};
-    return std::ranges::find(extensions, extension_of(file)) != extensions.end();
-}
-
 /// Returns the triangles of a model with the stored normals and tangents, once per primitive.
 Mesh read_asset_mesh(const std::filesystem::path& file) {
     Report report;
@@ -232,8 +227,8 @@ std::string lossy_compression(const std::filesystem::path& file) {
 /// Returns the extension of a format that relief-bake writes without loss.
 std::string lossless_extension(const std::filesystem::path& file, int bits) {
     const std::string own = extension_of(file);
-    if (bits == 32) return own == ".tif" || own == ".tiff" ? own : ".exr";
-    return own == ".tif" || own == ".tiff" ? own : ".png";
+    if (own == ".tif" || own == ".tiff") return own;
+    return bits == 32 ? ".exr" : ".png";
 }
 
 std::vector<AssetExperiment> measure_normals(const AssetInput& input, const AssetOptions& options,
@@ -273,9 +268,10 @@ void check_effects(const AssetRequest& request, const std::vector<AssetInput>& i
     const auto any = [&](const auto& is_one) {
         return std::any_of(inputs.begin(), inputs.end(), is_one);
     };
-    const bool meshes = any([](const AssetInput& one) { return !one.high && is_model(one.file); });
+    const bool meshes =
+        any([](const AssetInput& one) { return !one.high && has_model_extension(one.file); });
     const bool pairs = any([](const AssetInput& one) { return one.high.has_value(); });
-    const bool images = any([](const AssetInput& one) { return !is_model(one.file); });
+    const bool images = any([](const AssetInput& one) { return !has_model_extension(one.file); });
     const bool heights = images && request.image_kind != ImageKind::normals;
     const auto require = [](bool has_input, bool is_given, const char* option, const char* input) {
         if (is_given && !has_input)
@@ -326,13 +322,14 @@ std::vector<AssetInput> inputs_of(const AssetRequest& request) {
 std::vector<AssetExperiment> measure(const AssetInput& input, const AssetRequest& request,
                                      AssetOptions options, std::string& description) {
     options.file = input.name;
-    if (!input.high && !is_model(input.file))
+    if (!input.high && !has_model_extension(input.file))
         options.lossy_compression = lossy_compression(input.file);
     options.arguments =
         input.high ? quoted(*input.high) + " " + quoted(input.file) : quoted(input.file);
     return about(input.file, [&] {
         if (input.high) return measure_pair(input, request, options, description);
-        if (is_model(input.file)) return measure_mesh(input, request, options, description);
+        if (has_model_extension(input.file))
+            return measure_mesh(input, request, options, description);
         return measure_image(input, request, options, description);
     });
 }

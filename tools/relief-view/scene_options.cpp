@@ -6,14 +6,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <limits>
 #include <numbers>
 #include <set>
-#include <string_view>
 
 #include "common/command.h"
+#include "common/model_file.h"
 #include "common/options.h"
 #include "common/text.h"
 #include "environment_options.h"
@@ -38,14 +37,11 @@ constexpr const char* model_group = "Model";
 
 /// Returns up to three models of a folder, for a message.
 std::string models_in(const std::filesystem::path& folder) {
-    constexpr std::array<std::string_view, 7> extensions = {".glb", ".gltf", ".obj", ".ply",
-                                                            ".stl", ".off",  ".json"};
     constexpr std::size_t shown = 3;
     std::set<std::string> names;
     std::error_code problem;
     for (const auto& entry : std::filesystem::directory_iterator(folder, problem)) {
-        const std::string extension = extension_of(entry.path());
-        if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end())
+        if (has_model_extension(entry.path()) || extension_of(entry.path()) == ".json")
             names.insert(entry.path().filename().string());
     }
     if (names.empty()) return "it contains no model";

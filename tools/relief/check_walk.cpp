@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <optional>
 #include <set>
@@ -14,6 +13,7 @@
 
 #include "common/command.h"
 #include "common/file_jobs.h"
+#include "common/model_file.h"
 #include "common/text.h"
 #include "texture_names.h"
 
@@ -135,10 +135,7 @@ void pair_by_name(std::vector<CheckInput>& files) {
 }  // namespace
 
 std::optional<CheckedKind> kind_by_name(const fs::path& file) {
-    static constexpr std::array<std::string_view, 6> models = {".glb", ".gltf", ".obj",
-                                                               ".ply", ".stl",  ".off"};
-    const std::string extension = extension_of(file);
-    if (std::ranges::find(models, extension) != models.end()) return CheckedKind::model;
+    if (has_model_extension(file)) return CheckedKind::model;
     if (has_image_extension(file)) return CheckedKind::image;
     return std::nullopt;
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "common/model_file.h"
 #include "common/text.h"
 
 namespace relief::tools {
@@ -241,10 +242,8 @@ void drop_one(ViewOptions& options, const std::filesystem::path& file) {
 }  // namespace
 
 DroppedAs dropped_as(const std::filesystem::path& file) {
-    static constexpr std::array<std::string_view, 7> models = {".glb", ".gltf", ".obj", ".ply",
-                                                               ".stl", ".off",  ".json"};
     const std::string extension = extension_of(file);
-    if (std::find(models.begin(), models.end(), extension) != models.end()) return DroppedAs::model;
+    if (has_model_extension(file) || extension == ".json") return DroppedAs::model;
     if (extension == ".hdr" || is_folder(file)) return DroppedAs::environment;
     using Words = std::array<std::string_view, 3>;
     const std::string stem = lower(file.stem().string());
