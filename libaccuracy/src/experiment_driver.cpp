@@ -240,11 +240,10 @@ namespace {
 
 struct SubjectEntry {
     Subject subject;
-    std::vector<PlannedExperiment> (*plan)(const PlanOptions&);
+    Plan* plan;
     bool is_rendered = false;
 };
 
-/// All subjects, in the order of reports.
 constexpr std::array subject_entries = {
     SubjectEntry{Subject::normals, normals_plan},
     SubjectEntry{Subject::tangents, tangents_plan, true},
@@ -265,13 +264,6 @@ const SubjectEntry& entry_of(Subject subject) {
 }
 
 }  // namespace
-
-std::vector<Subject> subjects_with_experiments() {
-    std::vector<Subject> subjects;
-    for (const SubjectEntry& entry : subject_entries)
-        subjects.push_back(entry.subject);
-    return subjects;
-}
 
 bool uses_opengl(Subject subject) {
     return entry_of(subject).is_rendered;

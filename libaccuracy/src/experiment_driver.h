@@ -151,47 +151,11 @@ std::vector<Experiment> run_planned(std::vector<PlannedExperiment> plan, const R
 /// Measures one experiment in one pass, and marks the Pareto-optimal methods.
 Experiment measured(PreparedExperiment prepared, const RunOptions& options);
 
-/// Surfaces with several triangulations, with charts over the cell size; a large mesh for time and
-/// memory; and the fans of [Max 1999].
-std::vector<PlannedExperiment> normals_plan(const PlanOptions& options);
-
-/// Tangent methods on textured surfaces and on a large mesh; pairs of bases that differ; and stored
-/// against derived frames in rendered images.
-std::vector<PlannedExperiment> tangents_plan(const PlanOptions& options);
-
-/// One wave in floats, 16 and 8 bits with charts over the wavelength; fields as files contain them,
-/// with heat maps for one of them; and a large map for time and memory.
-std::vector<PlannedExperiment> bump_plan(const PlanOptions& options);
-
-/// Unit normals of maps and tangent frames of vertices in few bits, read and written.
-std::vector<PlannedExperiment> storage_plan(const PlanOptions& options);
-
-/// Normal maps in block formats of GPUs and in texels, with a chart over the wavelength.
-std::vector<PlannedExperiment> compression_plan(const PlanOptions& options);
-
-/// Fixed numbers of rays per texel, and additional rays only in texels whose first rays differ, in
-/// 8 and 16 bits and in float.
-std::vector<PlannedExperiment> bake_plan(const PlanOptions& options);
-
-/// Decimation of analytic surfaces: the distance from the surface and the angle of triangles, with
-/// charts over the number of triangles; and a large mesh for time and memory.
-std::vector<PlannedExperiment> decimation_plan(const PlanOptions& options);
-
-/// Unwrapping of a smooth, a noisy and a sharp-edged surface: the stretch of the coordinates and
-/// the unused texels, with a chart over the padding; and a large mesh for time and memory.
-std::vector<PlannedExperiment> unwrapping_plan(const PlanOptions& options);
-
-/// Methods of relief mapping on a plane: height maps in bands of view angles, with charts over the
-/// angle.
-std::vector<PlannedExperiment> relief_plan(const PlanOptions& options);
-
-/// Interpolation, highlights, Fresnel factors, unit normals, cube maps and antialiasing. Without
-/// OpenGL, those that render measure nothing, and their findings give the reason.
-std::vector<PlannedExperiment> shading_plan(const PlanOptions& options);
-
-/// Inputs that become ever smaller, larger, farther from the origin, narrower or steeper, until the
-/// results of a method are wrong.
-std::vector<PlannedExperiment> stability_plan(const PlanOptions& options);
+/// Lists the experiments of a subject. The file of the subject describes them. Without OpenGL,
+/// those that render measure nothing, and their findings give the reason.
+using Plan = std::vector<PlannedExperiment>(const PlanOptions& options);
+Plan normals_plan, tangents_plan, bump_plan, storage_plan, compression_plan, bake_plan,
+    decimation_plan, unwrapping_plan, relief_plan, shading_plan, stability_plan;
 
 /// Returns the finding of an experiment: the most accurate of the compared methods, and the errors
 /// and times of the others; and the effect of float32, if methods are in pairs of both arithmetics.

@@ -327,17 +327,17 @@ TEST(PeakBytes, AreTheMaximumAllocated) {
 }
 
 TEST(Subjects, HaveTheExperimentsOfTheirName) {
-    for (const Subject subject : subjects_with_experiments()) {
+    for (const EnumName<Subject>& subject : enum_names<Subject>) {
         std::size_t all = 0;
         RunOptions options = untimed();
         options.is_quick = true;
         options.selects_experiment = [&](const std::string& id) {
-            EXPECT_TRUE(id.starts_with(std::string(enum_name(subject)) + "/")) << id;
+            EXPECT_TRUE(id.starts_with(std::string(subject.name) + "/")) << id;
             ++all;
             return false;
         };
-        EXPECT_TRUE(run_experiments(std::array{subject}, options).empty());
-        EXPECT_GE(all, 2U) << enum_name(subject);
+        EXPECT_TRUE(run_experiments(std::array{subject.value}, options).empty());
+        EXPECT_GE(all, 2U) << subject.name;
     }
 }
 

@@ -100,7 +100,7 @@ void expect_pictures_of_errors(const std::vector<Experiment>& all) {
     }
 }
 
-class ExperimentsOf : public testing::TestWithParam<Subject> {};
+class ExperimentsOf : public testing::TestWithParam<EnumName<Subject>> {};
 
 TEST_P(ExperimentsOf, HaveTheStoredFigures) {
     RunOptions options = quick_untimed();
@@ -109,7 +109,7 @@ TEST_P(ExperimentsOf, HaveTheStoredFigures) {
                (!id.starts_with("shading/") || id.starts_with("shading/fresnel") ||
                 id == "shading/unit-normal");
     };
-    std::vector<Experiment> all = run_experiments(std::array{GetParam()}, options);
+    std::vector<Experiment> all = run_experiments(std::array{GetParam().value}, options);
     const FigureTable stored;
     FigureTable actual = stored;
     for (const Experiment& experiment : all) {
@@ -135,19 +135,17 @@ TEST_P(ExperimentsOf, HaveTheStoredFigures) {
         ADD_FAILURE() << "if the changes are right, replace tests/accuracy/" << FigureTable::name
                       << " by " << file;
     }
-    if (GetParam() == Subject::bake) expect_pictures_of_errors(all);
+    if (GetParam().value == Subject::bake) expect_pictures_of_errors(all);
     // Only textbook code has undefined results.
     for (Experiment& experiment : all) {
         std::erase_if(experiment.measurements,
                       [](const Measurement& one) { return is_textbook(one.method); });
     }
-    expect_whole(all, GetParam());
+    expect_whole(all, GetParam().value);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ExperimentsOf, testing::ValuesIn(subjects_with_experiments()),
-                         [](const testing::TestParamInfo<Subject>& tested) {
-                             return std::string(enum_name(tested.param));
-                         });
+INSTANTIATE_TEST_SUITE_P(All, ExperimentsOf, testing::ValuesIn(enum_names<Subject>),
+                         [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace
 }  // namespace relief::test

@@ -91,20 +91,14 @@ std::string method_rows(const ordered_json& experiment) {
     return text;
 }
 
-/// Returns the number of characters of UTF-8 text.
-std::size_t length_of(const std::string& text) {
-    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char byte) {
-        return (static_cast<unsigned char>(byte) & 0xC0) != 0x80;
-    }));
-}
-
 /// Breaks a paragraph into lines of at most 120 characters, at spaces outside of code spans.
 std::string wrapped(const std::string& paragraph) {
     constexpr std::size_t max_length = 120;
     std::string result;
     std::string line;
     const auto add_word = [&](const std::string& word) {
-        if (!line.empty() && length_of(line) + 1 + length_of(word) > max_length) {
+        if (!line.empty() &&
+            tools::code_points_in(line) + 1 + tools::code_points_in(word) > max_length) {
             result += line + "\n";
             line.clear();
         }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "relief/accuracy/experiment.h"
+#include "relief/mesh/statistics.h"
 
 namespace relief::tools {
 
@@ -53,7 +54,7 @@ class ProcessorUse {
     [[nodiscard]] std::optional<OtherPrograms> of_others() const;
 
   private:
-    double wall_seconds_ = 0.0;
+    Stopwatch clock_;
     double own_seconds_ = 0.0;
     std::optional<double> all_seconds_;
 };

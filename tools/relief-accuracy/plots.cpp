@@ -184,9 +184,7 @@ std::string px(double value) {
 /// Returns about the width of a text.
 double text_width(const std::string& text) {
     constexpr double width_of_letter = 6.1;  // The mean at a height of 11.5.
-    return width_of_letter *
-           static_cast<double>(std::count_if(text.begin(), text.end(),
-                                             [](char byte) { return (byte & 0xC0) != 0x80; }));
+    return width_of_letter * static_cast<double>(code_points_in(text));
 }
 
 std::string line(double x1, double y1, double x2, double y2) {

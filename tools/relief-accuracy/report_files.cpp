@@ -94,17 +94,7 @@ Json csv_value(const Json& experiment, const Json& measurement, const CsvColumn&
     return text;
 }
 
-const char* role_name(PictureRole role) {
-    switch (role) {
-        case PictureRole::heat:
-            return "heat";
-        case PictureRole::before:
-            return "before";
-        case PictureRole::after:
-            break;
-    }
-    return "after";
-}
+constexpr std::array role_names = {"heat", "before", "after"};  ///< By PictureRole.
 
 /// Writes all pictures as PNG to folder/pictures. \throws FileError
 void write_pictures(const std::filesystem::path& folder, const AccuracyReport& report) {
@@ -167,7 +157,8 @@ std::string picture_file(const Experiment& experiment, PictureRole role, std::si
                               (letter >= '0' && letter <= '9') || letter == '.';
         if (!is_plain) letter = '-';
     }
-    return fmt::format("pictures/{}-{}-{}.png", name, role_name(role), index + 1);
+    return fmt::format("pictures/{}-{}-{}.png", name, role_names.at(static_cast<std::size_t>(role)),
+                       index + 1);
 }
 
 void write_text(const std::filesystem::path& file, const std::string& text) {
@@ -192,12 +183,6 @@ std::vector<std::filesystem::path> write_report(const std::filesystem::path& fol
 
 namespace {
 
-/// Returns the number of code points of UTF-8.
-std::size_t letters_of(const std::string& text) {
-    return static_cast<std::size_t>(
-        std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xC0) != 0x80; }));
-}
-
 /// Returns the table of methods. The names are aligned to the left, numbers to the right; rows of
 /// efficient methods begin with an asterisk.
 std::string rows_of(const Experiment& experiment) {
@@ -212,14 +197,14 @@ std::string rows_of(const Experiment& experiment) {
     std::vector<std::size_t> widths(rows[0].size());
     for (const std::vector<std::string>& row : rows) {
         for (std::size_t c = 0; c < row.size(); ++c)
-            widths[c] = std::max(widths[c], letters_of(row[c]));
+            widths[c] = std::max(widths[c], code_points_in(row[c]));
     }
     std::string text;
     for (std::size_t r = 0; r < rows.size(); ++r) {
         std::string line =
             r > 0 && experiment.measurements[r - 1].is_pareto_optimal ? "  * " : "    ";
         for (std::size_t c = 0; c < rows[r].size(); ++c) {
-            const std::string space(widths[c] - letters_of(rows[r][c]), ' ');
+            const std::string space(widths[c] - code_points_in(rows[r][c]), ' ');
             line += c == 0 ? rows[r][c] + space : "  " + space + rows[r][c];
         }
         line.erase(line.find_last_not_of(' ') + 1);

@@ -56,6 +56,11 @@ std::string bytes_text(std::optional<double> bytes) {
     return byte_size(static_cast<std::uintmax_t>(std::llround(*bytes)));
 }
 
+std::size_t code_points_in(std::string_view text) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(text, [](char byte) { return (byte & 0xC0) != 0x80; }));
+}
+
 std::string_view report_part(std::string_view name) {
     const std::vector<ReportPart>& parts = report_parts();
     const auto part = std::find_if(parts.begin(), parts.end(),

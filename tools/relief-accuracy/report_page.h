@@ -27,6 +27,9 @@ std::string range_text(double from, double to);
 /// missing value.
 std::string bytes_text(std::optional<double> bytes);
 
+/// Returns the number of code points of UTF-8.
+std::size_t code_points_in(std::string_view text);
+
 /// A value of a method: "2.00 ms", and for times the range from the 10th to the 90th percentile.
 struct MethodCell {
     std::string text{};

@@ -11,7 +11,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -240,11 +239,6 @@ bool may_compare_times(const Machine& old_one, const Machine& new_one) {
 
 namespace {
 
-double seconds_now() {
-    const auto now = std::chrono::steady_clock::now().time_since_epoch();
-    return std::chrono::duration<double>(now).count();
-}
-
 /// Returns the processor time of this process and of its children that have ended.
 double own_seconds() {
     double seconds = 0.0;
@@ -277,12 +271,11 @@ std::string to_string(const OtherPrograms& others) {
         others.is_busy() ? ": the machine was busy, and wall-clock times are too long" : "");
 }
 
-ProcessorUse::ProcessorUse()
-    : wall_seconds_(seconds_now()), own_seconds_(own_seconds()), all_seconds_(all_seconds()) {}
+ProcessorUse::ProcessorUse() : own_seconds_(own_seconds()), all_seconds_(all_seconds()) {}
 
 std::optional<OtherPrograms> ProcessorUse::of_others() const {
     const std::optional<double> all = all_seconds();
-    const double wall = seconds_now() - wall_seconds_;
+    const double wall = clock_.seconds();
     const long processors = sysconf(_SC_NPROCESSORS_ONLN);
     if (!all || !all_seconds_ || !(wall > 0.0) || processors <= 0) return std::nullopt;
     const double others = *all - *all_seconds_ - (own_seconds() - own_seconds_);
@@ -309,31 +302,27 @@ struct RunCommandOptions {
 
 std::string subject_choices() {
     std::string words = "all";
-    for (const Subject subject : subjects_with_experiments())
-        words += ", " + std::string(enum_name(subject));
+    for (const EnumName<Subject>& one : enum_names<Subject>)
+        words += std::string(", ") + one.name;
     return words;
 }
 
 /// Returns the requested subjects in the order of reports. \throws UsageError
 std::vector<Subject> subjects_of(const std::vector<std::string>& words) {
-    const std::vector<Subject> known = subjects_with_experiments();
+    const bool is_all = words == std::vector<std::string>{"all"};
     std::vector<Subject> requested;
-    for (const std::string& word : words) {
-        if (word == "all") {
-            if (words.size() > 1) throw UsageError("all: includes the other subjects");
-            return known;
-        }
-        const auto found = std::find_if(known.begin(), known.end(),
-                                        [&](Subject one) { return enum_name(one) == word; });
-        if (found == known.end())
-            throw UsageError(fmt::format("{}: not one of {}", word, subject_choices()));
-        if (std::find(requested.begin(), requested.end(), *found) != requested.end())
-            throw UsageError(fmt::format("{}: given twice", word));
-        requested.push_back(*found);
+    std::vector<std::string_view> known;
+    for (const EnumName<Subject>& one : enum_names<Subject>) {
+        known.emplace_back(one.name);
+        const auto count = std::count(words.begin(), words.end(), known.back());
+        if (count > 1) throw UsageError(fmt::format("{}: given twice", one.name));
+        if (is_all || count == 1) requested.push_back(one.value);
     }
-    std::sort(requested.begin(), requested.end(), [&](Subject a, Subject b) {
-        return std::find(known.begin(), known.end(), a) < std::find(known.begin(), known.end(), b);
-    });
+    for (const std::string& word : words) {
+        if (is_all || std::find(known.begin(), known.end(), word) != known.end()) continue;
+        throw UsageError(word == "all" ? "all: includes the other subjects"
+                                       : fmt::format("{}: not one of {}", word, subject_choices()));
+    }
     return requested;
 }
 

@@ -26,7 +26,7 @@
 namespace RELIEF_API relief {
 namespace accuracy {
 
-/// The subjects of experiments.
+/// The subjects of experiments. All have some.
 enum class Subject {
     normals,
     tangents,
@@ -43,7 +43,7 @@ enum class Subject {
 
 }  // namespace accuracy
 
-/// The names of `relief-accuracy run`.
+/// The names of `relief-accuracy run`, in the order of reports.
 template <>
 inline constexpr auto enum_names<accuracy::Subject> =
     std::to_array<EnumName<accuracy::Subject>>({{"normals", accuracy::Subject::normals},
@@ -256,9 +256,6 @@ void mark_pareto_optimal(Experiment& experiment);
 /// are positive and finite.
 /// \return nothing for fewer than two different x
 std::optional<double> fitted_order(const std::vector<CurvePoint>& points);
-
-/// Returns the subjects that have experiments, in the order of reports.
-std::vector<Subject> subjects_with_experiments();
 
 /// Returns true if some of its experiments draw with OpenGL, so that their errors depend on the
 /// renderer.
