@@ -227,32 +227,21 @@ struct Sweep {
     int decades = 0;
     int step = 1;
     /// The angular errors of a method at a value, in degrees; NaN where a direction is undefined.
-    std::function<std::vector<float>(std::size_t method, double value)> errors;
+    std::function<std::vector<float>(std::size_t method, double value)> errors{};
 };
 
-/// The errors of several methods in sweeps, and the value at which each method fails.
-class Sweeps {
-  public:
-    /// \param bound  limit of the RMS error in degrees; a method fails where it exceeds this
-    Sweeps(std::vector<std::string> methods, double bound, std::vector<Sweep> sweeps);
-
-    /// Computes the curves of a method in all charts.
-    /// \return the errors of all curves together
-    ErrorStats measure(std::size_t method);
-
-    /// A chart per sweep, with the curves of the measured methods.
-    [[nodiscard]] const std::vector<Chart>& charts() const { return charts_; }
-
+/// The errors of several methods in sweeps.
+struct SweptErrors {
+    std::vector<ErrorStats> errors;  ///< Of each method in all sweeps together.
+    std::vector<Chart> charts;       ///< One per sweep.
     /// "Larger (...): plain area fails from 1e+18 on, all others are within the limit." for each
     /// chart.
-    [[nodiscard]] std::string breaks() const;
-
-  private:
-    std::vector<std::string> methods_;
-    double bound_;
-    std::vector<Sweep> sweeps_;
-    std::vector<Chart> charts_;
+    std::string breaks;
 };
+
+/// \param bound  limit of the RMS error in degrees; a method fails where it exceeds this
+SweptErrors measured_sweeps(const std::vector<std::string>& methods, double bound,
+                            const std::vector<Sweep>& sweeps);
 
 /// Kinds of triangles that a mesh can have without a change of its surface.
 enum class HardTriangle {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -44,40 +45,37 @@ std::string breaks_of(const Chart& chart) {
 
 }  // namespace
 
-Sweeps::Sweeps(std::vector<std::string> methods, double bound, std::vector<Sweep> sweeps)
-    : methods_(std::move(methods)), bound_(bound), sweeps_(std::move(sweeps)) {
-    for (const Sweep& one : sweeps_) {
-        charts_.push_back({.id = one.id,
-                           .title = one.title,
-                           .x_label = one.x_label,
-                           .y_label = "RMS error, degrees",
-                           .bound = bound_});
-    }
-}
-
-ErrorStats Sweeps::measure(std::size_t method) {
-    std::vector<float> all;
-    for (std::size_t i = 0; i < sweeps_.size(); ++i) {
-        const Sweep& sweep = sweeps_[i];
-        Curve curve{.method = methods_[method]};
-        for (int decade = 0; decade <= sweep.decades; decade += sweep.step) {
-            const double value = std::pow(10.0, decade);
-            const std::vector<float> degrees = sweep.errors(method, value);
-            all.insert(all.end(), degrees.begin(), degrees.end());
-            const double error = curve_error(error_stats(degrees));
-            curve.points.push_back({value, error});
-            if (!curve.breaks_at && !(error <= bound_)) curve.breaks_at = value;
+SweptErrors measured_sweeps(const std::vector<std::string>& methods, double bound,
+                            const std::vector<Sweep>& sweeps) {
+    std::vector<std::vector<float>> all(methods.size());
+    SweptErrors result;
+    for (const Sweep& sweep : sweeps) {
+        std::vector<double> values;
+        for (int decade = 0; decade <= sweep.decades; decade += sweep.step)
+            values.push_back(std::pow(10.0, decade));
+        Chart& chart = result.charts.emplace_back(chart_over(
+            {.id = sweep.id,
+             .title = sweep.title,
+             .x_label = sweep.x_label,
+             .y_label = "RMS error, degrees",
+             .bound = bound},
+            methods, values, [](double value) { return value; },
+            [&](std::size_t method, double value) {
+                const std::vector<float> degrees = sweep.errors(method, value);
+                all[method].insert(all[method].end(), degrees.begin(), degrees.end());
+                return curve_error(error_stats(degrees));
+            }));
+        for (Curve& curve : chart.curves) {
+            const auto broken = std::ranges::find_if(
+                curve.points, [&](const CurvePoint& point) { return !(point.error <= bound); });
+            if (broken != curve.points.end()) curve.breaks_at = broken->x;
         }
-        charts_[i].curves.push_back(std::move(curve));
+        result.breaks += (result.breaks.empty() ? "" : ". ") + breaks_of(chart);
     }
-    return error_stats(std::move(all));
-}
-
-std::string Sweeps::breaks() const {
-    std::string text;
-    for (const Chart& chart : charts_)
-        text += (text.empty() ? "" : ". ") + breaks_of(chart);
-    return text + ".";
+    result.breaks += ".";
+    for (std::vector<float>& degrees : all)
+        result.errors.push_back(error_stats(std::move(degrees)));
+    return result;
 }
 
 namespace {
@@ -98,14 +96,10 @@ const Mesh& mesh_of(const Truth& ground_truth) {
     return ground_truth.mesh;
 }
 
-/// A quantity that grows as in Sweep, and its effect on an input.
+/// A sweep without its errors, and the effect of its quantity on an input.
 template <typename Truth>
 struct Growth {
-    std::string id;
-    std::string title;
-    std::string x_label;
-    int decades = 0;
-    int step = 1;
+    Sweep sweep;
     std::function<Truth(Truth unchanged, double value)> changed;
 };
 template <typename Truth>
@@ -120,14 +114,13 @@ template <typename Truth, typename Input, typename Result>
 PreparedExperiment swept_experiment(Experiment report, const std::string& unchanged,
                                     const std::shared_ptr<const Swept<Truth, Input, Result>>& swept,
                                     const Growths<Truth>& growths, const std::string& advice = {}) {
-    std::vector<Sweep> all_sweeps;
+    std::vector<Sweep> sweeps;
     for (const Growth<Truth>& one : growths) {
-        all_sweeps.push_back({one.id, one.title, one.x_label, one.decades, one.step,
-                              [swept, changed = one.changed](std::size_t method, double value) {
-                                  const Truth truth = changed(swept->ground_truth, value);
-                                  return swept->degrees(
-                                      swept->methods[method].compute(swept->input(truth)), truth);
-                              }});
+        sweeps.push_back(one.sweep);
+        sweeps.back().errors = [swept, changed = one.changed](std::size_t method, double value) {
+            const Truth truth = changed(swept->ground_truth, value);
+            return swept->degrees(swept->methods[method].compute(swept->input(truth)), truth);
+        };
     }
     std::vector<MethodOn<Input, Result>> functions = swept->methods;
     for (MethodOn<Input, Result>& one : functions) {
@@ -146,16 +139,17 @@ PreparedExperiment swept_experiment(Experiment report, const std::string& unchan
     prepared.methods =
         methods_on(std::shared_ptr<const Input>(swept, &swept->input(swept->ground_truth)),
                    functions, [](const auto&) { return ErrorStats(); });
-    const auto sweeps =
-        std::make_shared<Sweeps>(names_of(functions), broken_degrees, std::move(all_sweeps));
+    const SharedInput<SweptErrors> measured([names = names_of(functions), sweeps] {
+        return std::make_shared<const SweptErrors>(measured_sweeps(names, broken_degrees, sweeps));
+    });
     for (std::size_t i = 0; i < functions.size(); ++i)
-        prepared.methods[i].error = [sweeps, i] { return sweeps->measure(i); };
-    prepared.finish = [sweeps, advice](Experiment& finished) {
-        finished.charts = sweeps->charts();
+        prepared.methods[i].error = [measured, i] { return measured.get()->errors[i]; };
+    prepared.finish = [measured, advice](Experiment& finished) {
+        finished.charts = measured.get()->charts;
         finished.finding = fmt::format(
             "A method fails where its RMS error exceeds {} degree. {}{} docs/hard-cases.md lists "
             "single hard inputs and their outcomes.",
-            broken_degrees, sweeps->breaks(), advice);
+            broken_degrees, measured.get()->breaks, advice);
     };
     return prepared;
 }
@@ -247,9 +241,9 @@ PreparedExperiment normals_by_scale(const PlanOptions& options) {
          .input =
              fmt::format("torus of {} triangles at 31 scales from 1e-30 to 1e30", torus->items)},
         "at scale 1", torus,
-        {{"smaller", "Smaller", "times smaller than radius 1", 30, 2,
+        {{{"smaller", "Smaller", "times smaller than radius 1", 30, 2},
           changing<AnalyticMesh>(&Mesh::positions, smaller)},
-         {"larger", "Larger", "times larger than radius 1", 30, 2,
+         {{"larger", "Larger", "times larger than radius 1", 30, 2},
           changing<AnalyticMesh>(&Mesh::positions, larger)}});
 }
 
@@ -260,7 +254,7 @@ PreparedExperiment normals_by_offset(const PlanOptions& options) {
          .ground_truth = torus_ground_truth,
          .input = fmt::format("torus of {} triangles at 9 distances from 1 to 1e8", torus->items)},
         "at the origin", torus,
-        {{"offset", "Farther away", "distance along each axis, in radii of the torus", 8, 1,
+        {{{"offset", "Farther away", "distance along each axis, in radii of the torus", 8, 1},
           changing<AnalyticMesh>(&Mesh::positions, farther)}},
         " float64 is exact for the given positions: its error is that of rounding the positions to "
         "float, which no method can undo. Move meshes to the origin before storing them.");
@@ -279,14 +273,14 @@ PreparedExperiment normals_of_needles(const PlanOptions& options) {
          .input = fmt::format("{} single triangles at 13 widths from 1 to 1e-12 of their length",
                               count)},
         "at width 1", swept_normals(make_needles(count, 1.0, needles_seed)),
-        {{"width", "Narrower", "length over width", 12, 1, by_width}});
+        {{{"width", "Narrower", "length over width", 12, 1}, by_width}});
 }
 
 PreparedExperiment normals_beside_hard_triangles(const PlanOptions& options) {
     const auto torus = swept_torus(options);
     Growths<AnalyticMesh> growths;
     for (const HardTriangleName& one : hard_triangle_names) {
-        growths.push_back({one.id, one.title, "number of hard triangles", 3, 1,
+        growths.push_back({{one.id, one.title, "number of hard triangles", 3, 1},
                            [kind = one.kind](AnalyticMesh mesh, double count) {
                                mesh.mesh = with_hard_triangles(mesh.mesh, kind,
                                                                static_cast<std::size_t>(count));
@@ -345,13 +339,13 @@ PreparedExperiment tangents_by_scale(const PlanOptions& options) {
                               "31 scales each from 1e-30 to 1e30",
                               torus->items)},
         "at scale 1", torus,
-        {{"smaller", "Smaller meshes", "times smaller than radius 1", 30, 2,
+        {{{"smaller", "Smaller meshes", "times smaller than radius 1", 30, 2},
           changing<TexturedMesh>(&Mesh::positions, smaller)},
-         {"larger", "Larger meshes", "times larger than radius 1", 30, 2,
+         {{"larger", "Larger meshes", "times larger than radius 1", 30, 2},
           changing<TexturedMesh>(&Mesh::positions, larger)},
-         {"smaller-image", "Smaller texture coordinates", "times smaller than one image", 30, 2,
+         {{"smaller-image", "Smaller texture coordinates", "times smaller than one image", 30, 2},
           changing<TexturedMesh>(&Mesh::texcoords, smaller)},
-         {"larger-image", "Larger texture coordinates", "times larger than one image", 30, 2,
+         {{"larger-image", "Larger texture coordinates", "times larger than one image", 30, 2},
           changing<TexturedMesh>(&Mesh::texcoords, larger)}});
 }
 
@@ -365,10 +359,11 @@ PreparedExperiment tangents_by_offset(const PlanOptions& options) {
                               "9 distances each from 1 to 1e8",
                               torus->items)},
         "at the origin", torus,
-        {{"offset", "Meshes farther away", "distance along each axis, in radii", 8, 1,
+        {{{"offset", "Meshes farther away", "distance along each axis, in radii", 8, 1},
           changing<TexturedMesh>(&Mesh::positions, farther)},
-         {"offset-image", "Texture coordinates farther away", "distance along each axis, in images",
-          8, 1, changing<TexturedMesh>(&Mesh::texcoords, farther)}});
+         {{"offset-image", "Texture coordinates farther away",
+           "distance along each axis, in images", 8, 1},
+          changing<TexturedMesh>(&Mesh::texcoords, farther)}});
 }
 
 // Height maps
@@ -440,8 +435,8 @@ PreparedExperiment bump_by_steepness(const PlanOptions& options) {
                               "to 1e30",
                               map_side(options), swept_wavelength)},
         "at slope 1", swept_wave(options),
-        {{"steeper", "Steeper", "slope", 30, 2, steeper},
-         {"flatter", "Flatter", "1 / slope", 30, 2, flatter}});
+        {{{"steeper", "Steeper", "slope", 30, 2}, steeper},
+         {{"flatter", "Flatter", "1 / slope", 30, 2}, flatter}});
 }
 
 PreparedExperiment bump_by_offset(const PlanOptions& options) {
@@ -455,7 +450,7 @@ PreparedExperiment bump_by_offset(const PlanOptions& options) {
                          "heights from 1 to 1e8",
                          map_side(options), swept_wavelength)},
         "at 0", swept_wave(options),
-        {{"offset", "Higher", "height above zero, texels", 8, 1, higher}},
+        {{{"offset", "Higher", "height above zero, texels", 8, 1}, higher}},
         " The error of float64 is that of rounding these heights to float, which no method can "
         "undo: store heights relative to a zero within their range.");
 }
