@@ -311,13 +311,12 @@ void round_to_half(std::span<float> heights) {
     }
 }
 
-/// Converts codes of 8 bits by a function.
-template <typename Code>
-Image recoded(const Image& codes, int bits, int (*recode)(int)) {
-    Image result = make_image(codes.width, codes.height, 1, bits, ColorSpace::data);
-    std::transform(codes.as<std::uint8_t>().begin(), codes.as<std::uint8_t>().end(),
-                   result.as<Code>().begin(),
-                   [&](int code) { return static_cast<Code>(recode(code)); });
+/// Converts codes by a function.
+template <typename From, typename To>
+Image recoded(const Image& codes, int (*recode)(int)) {
+    Image result = make_image(codes.width, codes.height, 1, 8 * sizeof(To), ColorSpace::data);
+    std::ranges::transform(codes.as<From>(), result.as<To>().begin(),
+                           [&](int code) { return static_cast<To>(recode(code)); });
     return result;
 }
 
@@ -331,18 +330,15 @@ void store(Image heights, FieldCoding coding, BumpField& field) {
     field.options.strength = coded.strength;
     field.heights = std::move(coded.codes);
     if (coding == FieldCoding::bits8_in_16) {
-        field.heights =
-            recoded<std::uint16_t>(field.heights, 16, [](int code) { return code * 257; });
+        field.heights = recoded<std::uint8_t, std::uint16_t>(field.heights,
+                                                             [](int code) { return code * 257; });
     }
     if (coding == FieldCoding::bits8_dim) {
         // By way of 16 bits, so that nothing is rounded twice to 8.
         coded = coded_heights(heights, 16);
         field.options.strength = coded.strength * 255.0 / 24.0;
-        field.heights = make_image(heights.width, heights.height, 1, 8, ColorSpace::data);
-        std::transform(
-            coded.codes.as<std::uint16_t>().begin(), coded.codes.as<std::uint16_t>().end(),
-            field.heights.as<std::uint8_t>().begin(),
-            [](int code) { return static_cast<std::uint8_t>(100 + (code * 24 + 32767) / 65535); });
+        field.heights = recoded<std::uint16_t, std::uint8_t>(
+            coded.codes, [](int code) { return 100 + (code * 24 + 32767) / 65535; });
     }
 }
 

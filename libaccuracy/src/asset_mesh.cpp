@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/trigonometric.hpp>
 #include <numbers>
@@ -272,15 +273,11 @@ SamplePoints sample_points(const Mesh& mesh) {
     points.triangles = std::min(count, max_sampled_triangles);
     for (std::size_t i = 0; i < points.triangles; ++i) {
         const auto triangle = static_cast<std::uint32_t>(i * count / points.triangles);
-        for (int corner = -1; corner < 3; ++corner) {
-            Sample sample{triangle};
-            if (corner >= 0) {
-                sample.barycentric = glm::dvec3(1.0 / 6.0);
-                sample.barycentric[corner] = 2.0 / 3.0;
-            }
+        const std::array<Sample, 4> samples = samples_in(triangle);
+        for (const Sample& sample : samples) {
             const glm::dmat3 derived = basis_at(mesh, {{}, ShaderBasis::derived}, sample);
             if (!is_finite(derived)) {
-                if (corner < 0) ++points.left_out;
+                if (&sample == &samples.front()) ++points.left_out;
                 break;
             }
             points.samples.push_back(sample);
@@ -392,10 +389,8 @@ AssetExperiment from_mikktspace(const Mesh& mesh, const std::vector<Basis>& base
     for (const Basis& basis : bases) {
         std::vector<float> degrees;
         for (const Sample& sample : points.samples) {
-            const glm::dmat3 expected = basis_at(mesh, convention.frames, sample);
-            const glm::dmat3 actual = basis_at(mesh, basis.frames, sample);
-            for (const glm::dvec3& texel : tilted_texels)
-                degrees.push_back(angle_of(actual * texel, expected * texel));
+            add_texel_angles(degrees, basis_at(mesh, basis.frames, sample),
+                             basis_at(mesh, convention.frames, sample));
         }
         methods.push_back(with_error(basis.method, std::move(degrees)));
     }

@@ -364,7 +364,10 @@ struct Sample {
     glm::dvec3 barycentric{1.0 / 3.0};
 };
 
-/// Four points in each triangle whose three vertices are inner vertices.
+/// The middle of a triangle, and a point near each corner.
+std::array<Sample, 4> samples_in(std::uint32_t triangle);
+
+/// samples_in() of each triangle whose three vertices are inner vertices.
 std::vector<Sample> samples_of(const TexturedMesh& ground_truth);
 
 /// Tangent, bitangent and normal as columns.
@@ -389,6 +392,10 @@ FrameMethod made_unit(const FrameMethod& method);
 inline constexpr std::array<glm::dvec3, 4> tilted_texels = {
     glm::dvec3(0.5, 0.0, 0.8660254037844386), glm::dvec3(-0.5, 0.0, 0.8660254037844386),
     glm::dvec3(0.0, 0.5, 0.8660254037844386), glm::dvec3(0.0, -0.5, 0.8660254037844386)};
+
+/// Adds the angles between the normals of tilted texels in two bases.
+void add_texel_angles(std::vector<float>& degrees, const glm::dmat3& actual,
+                      const glm::dmat3& expected);
 
 /// The errors of the normals of tilted texels inside the triangles, in degrees.
 ErrorStats texel_errors(const TexturedMesh& ground_truth, const TangentFrames& frames);

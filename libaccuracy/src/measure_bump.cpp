@@ -300,12 +300,9 @@ const BumpMeasurement* cheapest_within(const BumpExperiment& experiment,
 }
 
 const BumpMeasurement* most_accurate(const BumpExperiment& experiment, ErrorKind kind) {
-    const BumpMeasurement* least = nullptr;
-    for (const BumpMeasurement& one : experiment.measurements) {
-        if (least == nullptr || one.error.*figure_of(kind) < least->error.*figure_of(kind))
-            least = &one;
-    }
-    return least;
+    const auto& all = experiment.measurements;
+    const auto error = [&](const BumpMeasurement& one) { return one.error.*figure_of(kind); };
+    return all.empty() ? nullptr : &*std::ranges::min_element(all, {}, error);
 }
 
 }  // namespace relief::accuracy

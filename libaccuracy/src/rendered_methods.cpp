@@ -186,7 +186,7 @@ Scene lit_scene(Mesh mesh, Material material) {
     scene.instances = {{}};
     scene.directional_lights = {{light_direction_world, glm::vec3(light_irradiance)}};
     scene.ambient = glm::vec3(lit_ambient);
-    scene.background = lit_background;
+    scene.background = glm::vec4(0.03F, 0.04F, 0.06F, 1.0F);
     scene.camera =
         framed(world_bounds(scene), glm::radians(30.0F), glm::radians(35.0F), 0.7F, 1.0F);
     scene.camera->vertical_fov = 0.5F;  // Flat objects leave room above and below.
@@ -220,14 +220,11 @@ std::size_t torus_triangles(int slices) {
     return static_cast<std::size_t>(slices) * static_cast<std::size_t>(slices);
 }
 
-std::string name_on_torus(const std::string& method, int slices) {
-    return fmt::format("{}, {} triangles", method, torus_triangles(slices));
-}
-
 RenderedMethod method_on_torus(const std::string& choice, const std::string& method, int slices,
                                const std::function<Scene(int slices)>& scene) {
-    return {name_on_torus(method, slices),
-            {{choice, method}, {"triangles", fmt::format("{}", torus_triangles(slices))}},
+    const std::string triangles = std::to_string(torus_triangles(slices));
+    return {method + ", " + triangles + " triangles",
+            {{choice, method}, {"triangles", triangles}},
             [=](double) { return Rendering{scene(slices)}; }};
 }
 
@@ -254,20 +251,11 @@ Chart torus_chart(const Experiment& experiment, std::span<const std::string> met
     return chart;
 }
 
-namespace {
-
-/// Statistics of any float map; error_stats() accepts all numbers.
-ErrorStats stats_of_map(const Image& map) {
-    const std::span<const float> errors = map.as<float>();
-    return error_stats({errors.begin(), errors.end()});
-}
-
-}  // namespace
-
 PictureError picture_error(const Image& ground_truth, const Image& picture) {
     const Image shown = to_srgb(ground_truth, 8);
     FlipDifference flip = flip_difference(shown, picture);
-    PictureError error{stats_of_map(flip.map), std::move(flip.map)};
+    const std::span<const float> pixels = flip.map.as<float>();
+    PictureError error{error_stats({pixels.begin(), pixels.end()}), std::move(flip.map)};
     error.figures.psnr = compare(shown, picture).psnr;
     return error;
 }

@@ -112,8 +112,6 @@ PicturePair image_pair(const std::string& title, const std::string& method, cons
 inline constexpr glm::vec3 light_direction_world{-0.5F, -0.8F, -0.6F};
 inline constexpr float light_irradiance = 0.9F;
 inline constexpr float lit_ambient = 0.08F;
-/// Linear color, opaque.
-inline constexpr glm::vec4 lit_background{0.03F, 0.04F, 0.06F, 1.0F};
 
 /// A mesh under one directional light and weak ambient light before a dark background. The camera
 /// is 30 degrees to the right and 35 degrees above; the image is square.
@@ -140,10 +138,8 @@ inline constexpr int smooth_torus_slices = 768;
 
 std::size_t torus_triangles(int slices);
 
-/// The name of a method on a torus: "flat, 576 triangles".
-std::string name_on_torus(const std::string& method, int slices);
-
-/// A method on a torus, whose choices are the method and the number of triangles.
+/// A method on a torus, "flat, 576 triangles", whose choices are the method and the number of
+/// triangles.
 RenderedMethod method_on_torus(const std::string& choice, const std::string& method, int slices,
                                const std::function<shade::Scene(int slices)>& scene);
 

@@ -448,8 +448,7 @@ FrameCodeErrors frame_errors(const SampleFrames& ground_truth, const Frames& act
         const glm::dmat3 expected(ground_truth.tangents[i],
                                   glm::cross(ground_truth.normals[i], ground_truth.tangents[i]),
                                   ground_truth.normals[i]);
-        for (const glm::dvec3& texel : tilted_texels)
-            texels.push_back(angle_of(basis * texel, expected * texel));
+        add_texel_angles(texels, basis, expected);
     }
     errors.normal = error_stats(normals);
     errors.tangent = error_stats(tangents);

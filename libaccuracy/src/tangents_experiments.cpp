@@ -56,6 +56,15 @@ glm::dmat3 matrix_of(const SurfaceFrame& frame) {
 
 }  // namespace
 
+std::array<Sample, 4> samples_in(std::uint32_t triangle) {
+    std::array<Sample, 4> samples;
+    samples.fill({triangle, glm::dvec3(1.0 / 6.0)});
+    samples[0].barycentric = glm::dvec3(1.0 / 3.0);
+    for (std::size_t corner = 0; corner < 3; ++corner)
+        samples.at(corner + 1).barycentric[static_cast<int>(corner)] = 2.0 / 3.0;
+    return samples;
+}
+
 std::vector<Sample> samples_of(const TexturedMesh& ground_truth) {
     std::vector<Sample> samples;
     const auto count = static_cast<std::uint32_t>(ground_truth.mesh.triangles.size());
@@ -65,12 +74,8 @@ std::vector<Sample> samples_of(const TexturedMesh& ground_truth) {
                 ground_truth.inner[corners.z] <
             3)
             continue;
-        samples.push_back({t, glm::dvec3(1.0 / 3.0)});
-        for (int corner = 0; corner < 3; ++corner) {
-            Sample sample{t, glm::dvec3(1.0 / 6.0)};
-            sample.barycentric[corner] = 2.0 / 3.0;
-            samples.push_back(sample);
-        }
+        const std::array<Sample, 4> all = samples_in(t);
+        samples.insert(samples.end(), all.begin(), all.end());
     }
     return samples;
 }
@@ -155,13 +160,17 @@ FrameMethod made_unit(const FrameMethod& method) {
     return unit;
 }
 
+void add_texel_angles(std::vector<float>& degrees, const glm::dmat3& actual,
+                      const glm::dmat3& expected) {
+    for (const glm::dvec3& texel : tilted_texels)
+        degrees.push_back(angle_of(actual * texel, expected * texel));
+}
+
 ErrorStats texel_errors(const TexturedMesh& ground_truth, const TangentFrames& frames) {
     std::vector<float> degrees;
     for (const Sample& sample : samples_of(ground_truth)) {
-        const glm::dmat3 actual = basis_at(ground_truth.mesh, frames, sample);
-        const glm::dmat3 expected = exact_basis_at(ground_truth, sample);
-        for (const glm::dvec3& texel : tilted_texels)
-            degrees.push_back(angle_of(actual * texel, expected * texel));
+        add_texel_angles(degrees, basis_at(ground_truth.mesh, frames, sample),
+                         exact_basis_at(ground_truth, sample));
     }
     return error_stats(std::move(degrees));
 }

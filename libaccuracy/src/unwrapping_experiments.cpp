@@ -163,14 +163,14 @@ ErrorStats stretch_errors(const Mesh& mesh, std::span<const glm::vec2> corner_te
 
 namespace {
 
-/// The options of a method.
-struct UnwrappingMethod {
-    std::string name;
-    std::string options_text;  ///< Of relief-mesh unwrap.
-    UnwrapOptions options;
+using UnwrappingMethod = MethodOn<Mesh, Unwrapped>;
 
-    [[nodiscard]] bool needs_texcoords() const { return options.repack || options.keep_seams; }
-};
+/// \param text  the options of relief-mesh unwrap
+UnwrappingMethod method_of(const std::string& name, const std::string& text,
+                           const UnwrapOptions& options) {
+    return {
+        name, {{"options", text}}, [options](const Mesh& mesh) { return unwrap(mesh, options); }};
+}
 
 UnwrapOptions usual_options(int size) {
     UnwrapOptions options;
@@ -186,21 +186,25 @@ UnwrapOptions with(UnwrapOptions options, Value UnwrapOptions::*member,
     return options;
 }
 
-std::vector<UnwrappingMethod> chart_methods(int size) {
+/// \param has_texcoords  methods that need existing charts are included
+std::vector<UnwrappingMethod> chart_methods(int size, bool has_texcoords) {
     using Options = UnwrapOptions;
     const Options usual = usual_options(size);
-    std::vector<UnwrappingMethod> methods = {
-        {"existing charts", "--repack", with(usual, &Options::repack, true)},
-        {"default", "none", usual},
-        {"keep seams", "--keep-seams", with(usual, &Options::keep_seams, true)},
-        {"conformal", "--flatten conformal",
-         with(usual, &Options::flattening, Flattening::conformal)},
-        {"split hard edges", "--split-hard 30",
-         with(usual, &Options::split_hard, std::numbers::pi / 6.0)}};
-    for (const double limit : {1.5, 1.2, 1.1}) {
-        methods.push_back({fmt::format("within {}", limit), fmt::format("--max-stretch {}", limit),
-                           with(usual, &Options::max_stretch, limit)});
-    }
+    std::vector<UnwrappingMethod> methods;
+    const auto add = [&](const std::string& name, const std::string& text, const Options& options) {
+        if (has_texcoords || !(options.repack || options.keep_seams))
+            methods.push_back(method_of(name, text, options));
+    };
+    add("existing charts", "--repack", with(usual, &Options::repack, true));
+    add("default", "none", usual);
+    add("keep seams", "--keep-seams", with(usual, &Options::keep_seams, true));
+    add("conformal", "--flatten conformal",
+        with(usual, &Options::flattening, Flattening::conformal));
+    add("split hard edges", "--split-hard 30",
+        with(usual, &Options::split_hard, std::numbers::pi / 6.0));
+    for (const double limit : {1.5, 1.2, 1.1})
+        add(fmt::format("within {}", limit), fmt::format("--max-stretch {}", limit),
+            with(usual, &Options::max_stretch, limit));
     return methods;
 }
 
@@ -208,13 +212,15 @@ std::vector<UnwrappingMethod> packing_methods(int size) {
     using Options = UnwrapOptions;
     const Options usual = usual_options(size);
     std::vector<UnwrappingMethod> methods;
-    for (const int padding : {0, 2, 4, 8, 16}) {
-        methods.push_back({fmt::format("padding {}", padding), fmt::format("--padding {}", padding),
-                           with(usual, &Options::padding, padding)});
-    }
-    methods.push_back({"padding 4, blocks of 4", "--align 4", with(usual, &Options::alignment, 4)});
-    methods.push_back({"padding 4, four tiles", fmt::format("--size {} --udim 4", size / 2),
-                       with(usual_options(size / 2), &Options::tiles, 4)});
+    for (const int padding : {0, 2, 4, 8, 16})
+        methods.push_back(method_of(fmt::format("padding {}", padding),
+                                    fmt::format("--padding {}", padding),
+                                    with(usual, &Options::padding, padding)));
+    methods.push_back(
+        method_of("padding 4, blocks of 4", "--align 4", with(usual, &Options::alignment, 4)));
+    methods.push_back(method_of("padding 4, four tiles",
+                                fmt::format("--size {} --udim 4", size / 2),
+                                with(usual_options(size / 2), &Options::tiles, 4)));
     return methods;
 }
 
@@ -229,14 +235,13 @@ std::string note_on(const AtlasStats& stats) {
 /// The quantity that an error of an unwrapping measures.
 enum class UnwrappingError { stretch, unused_texels };
 
-ErrorStats error_of(const Unwrapped& result, const Mesh& mesh, const UnwrapOptions& options,
-                    UnwrappingError kind) {
+ErrorStats error_of(const Unwrapped& result, const Mesh& mesh, int size, UnwrappingError kind) {
     if (kind == UnwrappingError::stretch)
-        return stretch_errors(mesh, result.corner_texcoords, options.size);
+        return stretch_errors(mesh, result.corner_texcoords, glm::ivec2(size));
     return error_stats({static_cast<float>(100.0 * (1.0 - result.stats.used))});
 }
 
-/// Methods that a mesh permits, without the question and the ground truth.
+/// An experiment without its question and ground truth.
 PreparedExperiment unwrapping_of(const std::shared_ptr<const Mesh>& mesh,
                                  const std::string& description, int size,
                                  const std::vector<UnwrappingMethod>& methods,
@@ -248,19 +253,10 @@ PreparedExperiment unwrapping_of(const std::shared_ptr<const Mesh>& mesh,
     prepared.report.item = "triangle";
     prepared.report.items = static_cast<double>(mesh->triangles.size());
     prepared.costs.memory = false;
-    for (const UnwrappingMethod& method : methods) {
-        if (method.needs_texcoords() && mesh->texcoords.empty()) continue;
-        prepared.methods.push_back(
-            {.name = method.name,
-             .choices = {{"options", method.options_text}},
-             .error =
-                 [=, options = method.options] {
-                     const Unwrapped result = unwrap(*mesh, options);
-                     return MethodError(error_of(result, *mesh, options, kind),
-                                        note_on(result.stats));
-                 },
-             .work = [mesh, options = method.options] { unwrap(*mesh, options); }});
-    }
+    prepared.methods = methods_on(mesh, methods, [=](const UnwrappingMethod& method) {
+        const Unwrapped result = method.compute(*mesh);
+        return MethodError(error_of(result, *mesh, size, kind), note_on(result.stats));
+    });
     return prepared;
 }
 
@@ -298,7 +294,7 @@ PreparedExperiment unwrapping_texels(Mesh given, const std::string& description,
 PreparedExperiment unwrapping_of_large_mesh(const PlanOptions& options) {
     const int size = options.is_quick ? 512 : 2048;
     const auto mesh = std::make_shared<const Mesh>(wavy_sphere(options.is_quick ? 32 : 289, 0.0));
-    std::vector<UnwrappingMethod> methods = chart_methods(size);
+    std::vector<UnwrappingMethod> methods = chart_methods(size, true);
     std::erase_if(methods, [](const UnwrappingMethod& method) {
         return method.name != "default" && method.name != "keep seams";
     });
@@ -316,7 +312,8 @@ PreparedExperiment unwrapping_of_large_mesh(const PlanOptions& options) {
 PreparedExperiment unwrapping_stretch(Mesh given, const std::string& description, int size) {
     const auto mesh = std::make_shared<const Mesh>(std::move(given));
     PreparedExperiment prepared =
-        unwrapping_of(mesh, description, size, chart_methods(size), UnwrappingError::stretch);
+        unwrapping_of(mesh, description, size, chart_methods(size, !mesh->texcoords.empty()),
+                      UnwrappingError::stretch);
     prepared.report.question = "Which options stretch the surface least, and what do they cost?";
     prepared.report.ground_truth =
         "The same lengths on the surface, at the mean density of texels. The error is how much "
