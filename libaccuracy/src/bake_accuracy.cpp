@@ -42,23 +42,21 @@ const ErrorStats& error_of(const BakeCheck& check, BakeStage stage) {
 
 }  // namespace
 
-BakeMeasurement measure_bake(const BakeReference& reference, const BakeSampling& sampling,
-                             std::span<const NormalMapFormat> formats) {
-    BakeMeasurement result;
+std::vector<MeasuredBake> measure_bake(const BakeReference& reference, const BakeSampling& sampling,
+                                       std::span<const NormalMapFormat> formats) {
+    std::vector<MeasuredBake> measured;
     BakedTexels bake;
-    result.cast_seconds = seconds_of([&] { bake = baked(reference, sampling); });
-    result.rays = bake.rays;
+    const double cast_seconds = seconds_of([&] { bake = baked(reference, sampling); });
     std::vector<float> degrees(reference.texels());
     for (const NormalMapFormat& format : formats) {
         std::vector<float> coded;
-        result.code_seconds.push_back(seconds_of([&] { coded = reference.coded(bake, format); }));
+        const double code_seconds = seconds_of([&] { coded = reference.coded(bake, format); });
         const BakeCheck check = reference.compare(bake, coded, degrees);
-        result.errors.push_back(check.error);
-        result.center.push_back(check.center);
-        result.quantization.push_back(error_of(check, BakeStage::quantization));
-        result.sampling = error_of(check, BakeStage::sampling);
+        measured.push_back({sampling, format, check.error, error_of(check, BakeStage::quantization),
+                            error_of(check, BakeStage::sampling), check.center, bake.rays,
+                            cast_seconds + code_seconds});
     }
-    return result;
+    return measured;
 }
 
 Image bake_error_map(const BakeReference& reference, const BakeSampling& sampling,
@@ -101,16 +99,16 @@ void detail::TimedBakes::cast(std::size_t sampling) {
                         std::vector<bool>(formats_.size(), false), thread_count()};
 }
 
-const BakeMeasurement& detail::TimedBakes::result(std::size_t sampling) {
+const std::vector<MeasuredBake>& detail::TimedBakes::result(std::size_t sampling) {
     if (!bakes_[sampling]) cast(sampling);
-    return bakes_[sampling]->measurement;
+    return bakes_[sampling]->by_format;
 }
 
 double detail::TimedBakes::seconds_of_round(std::size_t sampling, std::size_t format) {
     std::optional<Bake>& bake = bakes_[sampling];
     if (!bake || bake->is_format_used[format] || bake->threads != thread_count()) cast(sampling);
     bake->is_format_used[format] = true;
-    return bake->measurement.cast_seconds + bake->measurement.code_seconds[format];
+    return bake->by_format[format].seconds;
 }
 
 std::vector<Method> detail::methods_of(
@@ -121,7 +119,7 @@ std::vector<Method> detail::methods_of(
         for (std::size_t f = 0; f < bakes->formats().size(); ++f) {
             Method& method =
                 methods.emplace_back(described(bakes->samplings()[s], bakes->formats()[f]));
-            method.error = [bakes, s, f] { return bakes->result(s).errors[f]; };
+            method.error = [bakes, s, f] { return bakes->result(s)[f].error; };
             method.round = [bakes, s, f] { return bakes->seconds_of_round(s, f); };
         }
     }
@@ -130,22 +128,12 @@ std::vector<Method> detail::methods_of(
 
 namespace {
 
-/// Returns the measurement of a sampling in each format.
-std::vector<MeasuredBake> by_format(const BakeSampling& sampling,
-                                    std::span<const NormalMapFormat> formats,
-                                    const BakeMeasurement& measurement) {
-    std::vector<MeasuredBake> measured;
-    for (std::size_t f = 0; f < formats.size(); ++f) {
-        measured.push_back({sampling, formats[f], measurement.errors[f],
-                            measurement.quantization[f], measurement.sampling, measurement.rays,
-                            measurement.cast_seconds + measurement.code_seconds[f], false});
-    }
-    // Without a texel, any limit would hold.
+/// Without a texel, any limit would hold.
+void require_texels(const std::vector<MeasuredBake>& measured) {
     if (measured.front().error.count == 0) {
         throw InvalidInput(
             "no measured texel has a normal from the high model: no error can be measured");
     }
-    return measured;
 }
 
 void describe(const BakeReference& reference, BakeComparison& result) {
@@ -171,12 +159,12 @@ BakeComparison compare_bakes(const Baker& baker, const BakeMapOptions& map,
          .costs = {.one_thread = false, .memory = false}},
         run);
     for (std::size_t i = 0; i < bakes->samplings().size(); ++i) {
-        for (MeasuredBake& one :
-             by_format(bakes->samplings()[i], bakes->formats(), bakes->result(i))) {
+        require_texels(bakes->result(i));
+        for (const MeasuredBake& one : bakes->result(i)) {
             const Measurement& measurement = experiment.measurements[result.measured.size()];
-            one.seconds = median_seconds(measurement);
-            one.is_pareto_optimal = measurement.is_pareto_optimal;
-            result.measured.push_back(std::move(one));
+            MeasuredBake& timed = result.measured.emplace_back(one);
+            timed.seconds = median_seconds(measurement);
+            timed.is_pareto_optimal = measurement.is_pareto_optimal;
         }
     }
     return result;
@@ -199,8 +187,9 @@ class SampleSearch {
     /// result. \return whether one is within the limit
     bool try_samples(const BakeReference& reference, const BakeSampling& sampling,
                      BakeComparison& result) {
-        const BakeMeasurement measurement = measure_bake(reference, sampling, formats_);
-        for (MeasuredBake& bake : by_format(sampling, formats_, measurement)) {
+        std::vector<MeasuredBake> measured = measure_bake(reference, sampling, formats_);
+        require_texels(measured);
+        for (MeasuredBake& bake : measured) {
             if (is_permitted(bake)) {
                 if (!result.selected && is_within(bake)) result.selected = bake;
                 result.measured.push_back(bake);

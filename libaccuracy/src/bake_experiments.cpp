@@ -180,21 +180,26 @@ std::string BumpyBake::description() const {
                        map_.height);
 }
 
-Image BumpyBake::map_by(const BakeSampling& way, const NormalMapFormat& format) const {
-    BakeMapOptions map = map_;
-    map.samples = way.samples;
-    if (way.sample_degrees) map.sample_angle = glm::radians(*way.sample_degrees);
-    Image normals = make_image(map.width, map.height, 3, 32, ColorSpace::data);
-    std::span<float> rest = normals.as<float>();
+WholeBake whole_bake(const Baker& baker, const BakeMapOptions& map) {
+    WholeBake whole{make_image(map.width, map.height, 3, 32, ColorSpace::data)};
+    std::span<float> rest = whole.normals.as<float>();
     Report ignored;
-    baker_.bake(
+    const BakeResult result = baker.bake(
         map,
         [&](const BakedRows& rows) {
             std::copy(rows.normals.begin(), rows.normals.end(), rest.begin());
             rest = rest.subspan(rows.normals.size());
         },
         ignored);
-    return encode_normal_map(normals, format, ignored);
+    whole.rays = result.rays;
+    return whole;
+}
+
+Image BumpyBake::map_by(const BakeSampling& way, const NormalMapFormat& format) const {
+    BakeMapOptions map = map_;
+    map.samples = way.samples;
+    if (way.sample_degrees) map.sample_angle = glm::radians(*way.sample_degrees);
+    return encode_normal_map(whole_bake(baker_, map).normals, format);
 }
 
 namespace {
@@ -259,7 +264,7 @@ struct BumpyBakes {
               std::move(formats))) {}
 
     [[nodiscard]] double rays_per_texel(std::size_t way) const {
-        return static_cast<double>(timed->result(way).rays) /
+        return static_cast<double>(timed->result(way).front().rays) /
                static_cast<double>(timed->reference().texels());
     }
 
@@ -269,7 +274,7 @@ struct BumpyBakes {
         Curve curve{.method = name};
         for (std::size_t way = first; way < last; ++way)
             curve.points.push_back(
-                {rays_per_texel(way), curve_error(timed->result(way).errors[format])});
+                {rays_per_texel(way), curve_error(timed->result(way)[format].error)});
         return curve;
     }
 };

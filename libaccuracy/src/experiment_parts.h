@@ -151,6 +151,13 @@ class BumpySphere {
     Mesh mesh_;
 };
 
+/// The normals of a whole map, three float channels, and the number of their rays.
+struct WholeBake {
+    Image normals;
+    std::size_t rays = 0;
+};
+WholeBake whole_bake(const Baker& baker, const BakeMapOptions& map);
+
 /// Bakes by several samplings, each in several formats.
 class TimedBakes {
   public:
@@ -162,7 +169,7 @@ class TimedBakes {
     [[nodiscard]] const std::vector<NormalMapFormat>& formats() const { return formats_; }
 
     /// The errors of a sampling in all formats; the rays are cast once.
-    const BakeMeasurement& result(std::size_t sampling);
+    const std::vector<MeasuredBake>& result(std::size_t sampling);
 
     /// Seconds for casting rays and encoding together. One cast serves a round of all formats; the
     /// cast of result() serves the first round on as many threads.
@@ -170,7 +177,7 @@ class TimedBakes {
 
   private:
     struct Bake {
-        BakeMeasurement measurement;
+        std::vector<MeasuredBake> by_format;
         std::vector<bool> is_format_used;
         std::size_t threads = 0;
     };

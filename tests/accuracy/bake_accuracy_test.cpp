@@ -36,15 +36,7 @@ struct WavyBake {
     BakeCheck check_of(int samples, const NormalMapFormat& format) {
         BakeMapOptions map = options.map;
         map.samples = samples;
-        Image normals = make_image(64, 192, 3, 32, ColorSpace::data);
-        std::size_t at = 0;
-        baker.bake(
-            map,
-            [&](const BakedRows& rows) {
-                for (const float value : rows.normals)
-                    normals.as<float>()[at++] = value;
-            },
-            report);
+        const Image normals = whole_bake(baker, map).normals;
         BakeCheckOptions check;
         check.map = map;
         check.reference_samples = 64;
@@ -72,14 +64,14 @@ TEST(BakeAccuracy, EqualsACheckOfTheWholeMap) {
     EXPECT_EQ(reference.texels(), 64U * 192U);
     EXPECT_EQ(reference.samples(), 64);
     for (const int samples : {1, 4}) {
-        const BakeMeasurement measured = measure_bake(reference, {samples}, all.formats);
-        EXPECT_GE(measured.rays, static_cast<std::size_t>(samples) * 64U * 192U);
+        const auto measured = measure_bake(reference, {samples}, all.formats);
+        EXPECT_GE(measured[0].rays, static_cast<std::size_t>(samples) * 64U * 192U);
         for (std::size_t i = 0; i < 2; ++i) {
             const BakeCheck check = all.check_of(samples, all.formats[i]);
-            EXPECT_NEAR(measured.errors[i].rms, check.error.rms, 1e-9);
-            EXPECT_EQ(measured.errors[i].max, check.error.max);
+            EXPECT_NEAR(measured[i].error.rms, check.error.rms, 1e-9);
+            EXPECT_EQ(measured[i].error.max, check.error.max);
             const auto codes = static_cast<std::size_t>(BakeStage::quantization);
-            EXPECT_NEAR(measured.quantization[i].rms, check.stages.at(codes).error.rms, 1e-6);
+            EXPECT_NEAR(measured[i].quantization.rms, check.stages.at(codes).error.rms, 1e-6);
         }
     }
 }
@@ -89,29 +81,29 @@ TEST(BakeAccuracy, MoreSamplesAndBitsHaveSmallerErrors) {
     const WavyBake& all = shared_bake();
     const BakeReference& reference = whole_map();
     EXPECT_EQ(reference.samples(), 256);
-    const BakeMeasurement one = measure_bake(reference, {1}, all.formats);
-    const BakeMeasurement four = measure_bake(reference, {4}, all.formats);
-    EXPECT_LT(four.errors[1].rms, one.errors[1].rms / 2.0);
-    EXPECT_LT(four.errors[1].rms, four.errors[0].rms);
-    EXPECT_LT(four.quantization[1].rms, 0.001);
-    EXPECT_GT(four.quantization[0].rms, 0.05);
+    const auto one = measure_bake(reference, {1}, all.formats);
+    const auto four = measure_bake(reference, {4}, all.formats);
+    EXPECT_LT(four[1].error.rms, one[1].error.rms / 2.0);
+    EXPECT_LT(four[1].error.rms, four[0].error.rms);
+    EXPECT_LT(four[1].quantization.rms, 0.001);
+    EXPECT_GT(four[0].quantization.rms, 0.05);
     // A map with one sample at the center is exact there.
-    EXPECT_LT(one.center[1].max, 0.002);
+    EXPECT_LT(one[1].center.max, 0.002);
 }
 
 TEST(BakeAccuracy, ErrorMapsHoldTheErrorsOfEachTexel) {
     const WavyBake& all = shared_bake();
     const BakeReference part(all.baker, all.options.map, 1);
     for (const BakeReference* reference : {&whole_map(), &part}) {
-        const BakeMeasurement measured = measure_bake(*reference, {4}, all.formats);
+        const auto measured = measure_bake(*reference, {4}, all.formats);
         const Image map = bake_error_map(*reference, {4}, all.formats[0]);
         EXPECT_EQ(map.width, 64);
         EXPECT_EQ(static_cast<std::size_t>(map.height), reference->texels() / 64);
         const std::span<const float> texel_errors = map.as<float>();
         const ErrorStats all_errors = error_stats({texel_errors.begin(), texel_errors.end()});
-        EXPECT_EQ(all_errors.count, measured.errors[0].count);
-        EXPECT_NEAR(all_errors.rms, measured.errors[0].rms, 1e-6);
-        EXPECT_NEAR(all_errors.max, measured.errors[0].max, 1e-6);
+        EXPECT_EQ(all_errors.count, measured[0].error.count);
+        EXPECT_NEAR(all_errors.rms, measured[0].error.rms, 1e-6);
+        EXPECT_NEAR(all_errors.max, measured[0].error.max, 1e-6);
     }
 }
 
@@ -120,8 +112,8 @@ TEST(BakeAccuracy, APartHasNearlyTheErrorsOfTheWhole) {
     const BakeReference part(all.baker, all.options.map, 1);
     EXPECT_FALSE(part.is_whole());
     EXPECT_EQ(part.texels(), 64U * 64U);
-    EXPECT_NEAR(measure_bake(part, {1}, all.formats).errors[1].rms,
-                measure_bake(whole_map(), {1}, all.formats).errors[1].rms, 0.01);
+    EXPECT_NEAR(measure_bake(part, {1}, all.formats)[1].error.rms,
+                measure_bake(whole_map(), {1}, all.formats)[1].error.rms, 0.01);
 }
 
 TEST_LABELS(not_sanitized);
@@ -129,14 +121,14 @@ TEST(BakeAccuracy, SeparatesSamplingFromRoundingUpTo256Samples) {
     WavyBake& all = shared_bake();
     const BakeReference reference(all.baker, all.options.map, 64, 1024);
     EXPECT_EQ(reference.samples(), 1024);
-    const BakeMeasurement few = measure_bake(reference, {16}, all.formats);
-    const BakeMeasurement many = measure_bake(reference, {256}, all.formats);
+    const auto few = measure_bake(reference, {16}, all.formats);
+    const auto many = measure_bake(reference, {256}, all.formats);
     // A map is not compared with its own samples. Four times as many samples per side are better.
-    EXPECT_GT(many.sampling.rms, 0.0);
-    EXPECT_LT(many.sampling.rms, 0.5 * few.sampling.rms);
+    EXPECT_GT(many[0].sampling_error.rms, 0.0);
+    EXPECT_LT(many[0].sampling_error.rms, 0.5 * few[0].sampling_error.rms);
     // Rounding and sampling are independent, and their sum is the error.
-    EXPECT_NEAR(many.errors[0].rms, std::hypot(many.sampling.rms, many.quantization[0].rms),
-                0.05 * many.errors[0].rms);
+    EXPECT_NEAR(many[0].error.rms, std::hypot(many[0].sampling_error.rms, many[0].quantization.rms),
+                0.05 * many[0].error.rms);
     // Larger maps have no memory for this number of samples, even if their charts are small.
     BakeMapOptions large = all.options.map;
     large.width = 2112;
@@ -153,18 +145,12 @@ constexpr int map_side = 96;
 
 /// Bakes a map with a number of rays per texel; returns unit normals in object space.
 Image baked(const BumpyBake& bake, int samples) {
-    Image normals = make_image(map_side, map_side, 3, 32, ColorSpace::data);
     BakeMapOptions map = bake.map();
     map.samples = samples;
     Report report;
-    bake.baker().bake(
-        map,
-        [&](const BakedRows& rows) {
-            std::copy(rows.normals.begin(), rows.normals.end(),
-                      normals.as<float>().begin() + std::ptrdiff_t{3} * map_side * rows.first_row);
-        },
-        report);
-    return object_from_tangent(normals, bake.baker().low(), {}, report).normals;
+    return object_from_tangent(whole_bake(bake.baker(), map).normals, bake.baker().low(), {},
+                               report)
+        .normals;
 }
 
 std::vector<test::TexelReference> references(const BumpyBake& bake) {
@@ -210,19 +196,6 @@ TEST(BumpySphere, HasTheNormalsOfItsFormula) {
     }
 }
 
-/// The RMS angle between two maps over all texels, in degrees.
-double rms_between(const Image& a, const Image& b) {
-    const std::span<const float> one = a.as<float>();
-    const std::span<const float> other = b.as<float>();
-    double squares = 0.0;
-    for (std::size_t i = 0; i < one.size(); i += 3) {
-        const double degrees = degrees_between(glm::dvec3(one[i], one[i + 1], one[i + 2]),
-                                               glm::dvec3(other[i], other[i + 1], other[i + 2]));
-        squares += degrees * degrees;
-    }
-    return std::sqrt(squares * 3.0 / static_cast<double>(one.size()));
-}
-
 TEST_LABELS(not_sanitized);
 TEST(BakeTruth, ManyRaysConvergeToTheFormula) {
     const BumpyBake bake(stacks, map_side);
@@ -236,10 +209,10 @@ TEST(BakeTruth, ManyRaysConvergeToTheFormula) {
     EXPECT_LT(rms_of(one, all, &test::TexelReference::mesh_middle), 0.1);
     EXPECT_GT(rms_of(one, all, &test::TexelReference::mesh), 0.3);
     // The experiments use such a bake with 256 rays over all texels, including the poles.
-    const BakeMeasurement found =
+    const auto found =
         measure_bake(bake.reference(), {1}, std::vector<NormalMapFormat>{{.bits = 32}});
-    const double between = rms_between(one, many);
-    EXPECT_NEAR(found.errors.front().rms, between, 0.1 * between);
+    const double between = map_errors(one, directions_of(many)).rms;
+    EXPECT_NEAR(found.front().error.rms, between, 0.1 * between);
     // A map with negated x is detected.
     EXPECT_GT(rms_of(many, all, &test::TexelReference::mesh, -1.0), 20.0);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "error_tables/bumpy_reference.h"
 #include "error_tables/error_tables.h"
@@ -16,33 +17,20 @@
 #include "relief/mesh/statistics.h"
 
 namespace relief::test {
+using namespace relief::accuracy::detail;
+
 namespace {
 
 constexpr int sampled_map_side = 256;
 constexpr LowSphere low_sphere{46, 23};
 
-struct Baked {
-    Image normals;  ///< In tangent space.
-    double rays_per_texel = 0.0;
-};
-
-Baked baked(const accuracy::detail::BumpySphere& high, const Mesh& low, int samples, bool is_auto) {
-    Baked result{make_image(sampled_map_side, sampled_map_side, 3, 32, ColorSpace::data)};
-    BakeOptions options;
-    options.map.width = options.map.height = sampled_map_side;
-    options.map.samples = samples;
-    if (is_auto) options.map.sample_angle = glm::radians(2.0);
-    Report report;
-    const std::span<float> all = result.normals.as<float>();
-    const BakeResult done = bake_normals(
-        std::span(&high.mesh(), 1), low, options,
-        [&](const BakedRows& rows) {
-            std::copy(rows.normals.begin(), rows.normals.end(),
-                      all.begin() + std::ptrdiff_t{3} * sampled_map_side * rows.first_row);
-        },
-        report);
-    result.rays_per_texel = static_cast<double>(done.rays) / (sampled_map_side * sampled_map_side);
-    return result;
+/// Bakes a map in tangent space.
+WholeBake baked(const Baker& baker, int samples, bool is_auto) {
+    BakeMapOptions map;
+    map.width = map.height = sampled_map_side;
+    map.samples = samples;
+    if (is_auto) map.sample_angle = glm::radians(2.0);
+    return whole_bake(baker, map);
 }
 
 /// Returns the normals that a shader reads from the stored map, in object space.
@@ -69,12 +57,8 @@ std::string errors(const Image& seen, const std::vector<TexelReference>& referen
     return digits(all.rms) + " / " + digits(all.p99) + " / " + digits(all.max);
 }
 
-std::string sample_row(const std::string& name, const std::vector<std::string>& cells) {
-    return table_row(name, std::vector<double>(cells.size(), NAN), cells);
-}
-
 std::string sample_tables() {
-    const accuracy::detail::BumpySphere high(200);
+    const BumpySphere high(200);
     Report report;
     const Mesh low = with_frames(make_sphere(low_sphere.slices, low_sphere.stacks),
                                  {.tangents = TangentMethod::mikktspace}, report)
@@ -83,16 +67,17 @@ std::string sample_tables() {
     rays.normals = vertex_normals(low.positions, low.triangles, NormalWeight::angle, report);
     const std::vector<TexelReference> all =
         texel_references(high, rays, low_sphere, sampled_map_side);
-    const Baked single = baked(high, low, 1, false);
+    const Baker baker(std::span(&high.mesh(), 1), low, {}, report);
+    const WholeBake single = baked(baker, 1, false);
     std::string text =
         "\nError of one ray from the surface at the center of each texel, in degrees: RMS / 99 % / "
         "maximum\n\n" +
         table_header({"against the mesh's triangles", "against the surface itself"});
     for (const int bits : {8, 16, 32}) {
         const Image seen = as_seen(single.normals, low, bits);
-        text += sample_row(fmt::format("{} bit", bits),
-                           {errors(seen, all, &TexelReference::mesh_middle),
-                            errors(seen, all, &TexelReference::surface_middle)});
+        text += table_row(fmt::format("{} bit", bits),
+                          {errors(seen, all, &TexelReference::mesh_middle),
+                           errors(seen, all, &TexelReference::surface_middle)});
     }
     text +=
         "\nError from the mean over the square of each texel, in degrees: RMS / 99 % / "
@@ -109,14 +94,16 @@ std::string sample_tables() {
                                  {"`--samples 16`", 16, false},
                                  {"`--samples 64`", 64, false},
                                  {"`--samples auto`", 16, true}}) {
-        const Baked map = baked(high, low, choice.samples, choice.is_auto);
+        const WholeBake map = baked(baker, choice.samples, choice.is_auto);
         const Image coarse = as_seen(map.normals, low, 8);
         const Image fine = as_seen(map.normals, low, 16);
-        text += sample_row(choice.name, {fmt::format("{:.1f}", map.rays_per_texel),
-                                         errors(coarse, all, &TexelReference::mesh),
-                                         errors(fine, all, &TexelReference::mesh),
-                                         errors(coarse, all, &TexelReference::surface),
-                                         errors(fine, all, &TexelReference::surface)});
+        text += table_row(
+            choice.name,
+            {fmt::format("{:.1f}",
+                         static_cast<double>(map.rays) / (sampled_map_side * sampled_map_side)),
+             errors(coarse, all, &TexelReference::mesh), errors(fine, all, &TexelReference::mesh),
+             errors(coarse, all, &TexelReference::surface),
+             errors(fine, all, &TexelReference::surface)});
     }
     return text;
 }
@@ -195,7 +182,7 @@ std::string direction_row(const std::string& name, const BakeOptions& options) {
         cells.push_back(fmt::format("{:.0f}%", 100.0 * (1.0 - result.seen * result.seen)));
         cells.push_back(fmt::format("{:.2f}", result.skewed));
     }
-    return table_row(name, std::vector<double>(cells.size(), NAN), cells);
+    return table_row(name, cells);
 }
 
 std::string direction_tables() {
@@ -232,21 +219,12 @@ Image baked(int padding) {
         texcoord = chart_begin + (chart_end - chart_begin) * texcoord;
     Mesh high = low;
     std::fill(high.normals.begin(), high.normals.end(), slant);
-    Image map = make_image(padded_map_side, padded_map_side, 3, 32, ColorSpace::data);
     BakeOptions options;
     options.map.width = options.map.height = padded_map_side;
     options.map.padding = padding;
     options.space = VectorSpace::object;
     Report report;
-    bake_normals(
-        std::span(&high, 1), low, options,
-        [&](const BakedRows& rows) {
-            std::copy(
-                rows.normals.begin(), rows.normals.end(),
-                map.as<float>().begin() + std::ptrdiff_t{3} * padded_map_side * rows.first_row);
-        },
-        report);
-    return map;
+    return whole_bake(Baker(std::span(&high, 1), low, options, report), options.map).normals;
 }
 
 /// Returns the largest error that a bilinear lookup within the chart can see. It includes the
@@ -279,8 +257,7 @@ std::string padding_tables() {
         for (int level = 1; level < level_count; ++level)
             cells.push_back(
                 in_digits(max_error_seen(smaller[static_cast<std::size_t>(level - 1)])));
-        text += table_row(fmt::format("`--padding {}`", padding),
-                          std::vector<double>(cells.size(), NAN), cells);
+        text += table_row(fmt::format("`--padding {}`", padding), cells);
     }
     return text;
 }
@@ -288,12 +265,9 @@ std::string padding_tables() {
 }  // namespace
 
 std::vector<PageSection> bake_tables() {
-    const auto section = [](const char* name, const std::string& text) {
-        return PageSection{
-            fmt::format("<!-- tables of {}: written by relief-documents -->\n", name), text + "\n"};
-    };
-    return {section("samples", sample_tables()), section("directions", direction_tables()),
-            section("padding", padding_tables())};
+    return {written_section("tables of samples", sample_tables()),
+            written_section("tables of directions", direction_tables()),
+            written_section("tables of padding", padding_tables())};
 }
 
 }  // namespace relief::test

@@ -106,10 +106,6 @@ std::string error_table(const std::vector<std::string>& fields) {
     return text + "\n";
 }
 
-PageSection section(const char* name, const std::string& text) {
-    return {fmt::format("<!-- tables of {}: written by relief-documents -->\n", name), text + "\n"};
-}
-
 }  // namespace
 
 PageSection kernel_tables() {
@@ -122,7 +118,7 @@ PageSection kernel_tables() {
     text +=
         error_table({"noise 0.003, float", "noise 0.03, float", "noise 0.3, float",
                      "noise 0.1, 8 bit", "creases, float", "terraces, float", "terraces, 8 bit"});
-    return section("kernels", text);
+    return written_section("tables of kernels", text);
 }
 
 PageSection choice_tables() {
@@ -139,7 +135,7 @@ PageSection choice_tables() {
                             code_name(name_of(choice.kernel, choice.gaussian_radius)),
                             in_two_digits(error), 100.0 * std::max(0.0, error / best.error - 1.0));
     }
-    return section("choices", text);
+    return written_section("tables of choices", text);
 }
 
 PageSection step_tables() {
@@ -162,7 +158,7 @@ PageSection step_tables() {
                                 in_two_digits(after.error), before.error / after.error);
         }
     }
-    return section("steps", text);
+    return written_section("tables of steps", text);
 }
 
 PageSection depth_tables() {
@@ -182,7 +178,7 @@ PageSection depth_tables() {
         }
         text += "\n";
     }
-    return section("depths", text);
+    return written_section("tables of depths", text);
 }
 
 std::vector<PageSection> bump_tables() {

@@ -58,6 +58,18 @@ std::string table_row(const std::string& name, const std::vector<double>& ranks,
     return text + "\n";
 }
 
+std::string table_row(const std::string& name, const std::vector<std::string>& cells) {
+    return table_row(name, std::vector<double>(cells.size(), NAN), cells);
+}
+
+std::string rms_and_max(const ErrorStats& error) {
+    return in_digits(error.rms) + " / " + in_digits(error.max);
+}
+
+PageSection written_section(const std::string& name, const std::string& text) {
+    return {fmt::format("<!-- {}: written by relief-documents -->\n", name), text + "\n"};
+}
+
 std::string section_in(const std::string& page, const std::string& begin) {
     const Place place = place_in(page, begin);
     return page.substr(place.first, place.size);

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "relief/mesh/statistics.h"
+
 namespace relief::test {
 
 /// The text between the line `begin` of a page and the next comment `<!-- end of ... -->`.
@@ -52,6 +54,15 @@ std::string table_header(const std::vector<std::string>& columns);
 /// part in the comparison.
 std::string table_row(const std::string& name, const std::vector<double>& ranks,
                       const std::vector<std::string>& cells);
+
+/// The same without a comparison.
+std::string table_row(const std::string& name, const std::vector<std::string>& cells);
+
+/// "0.453 / 2.03"
+std::string rms_and_max(const ErrorStats& error);
+
+/// The section that begins with "<!-- NAME: written by relief-documents -->".
+PageSection written_section(const std::string& name, const std::string& text);
 
 /// The present text of a section. \throws std::runtime_error if the page has no such section
 std::string section_in(const std::string& page, const std::string& begin);

@@ -30,7 +30,7 @@ std::string storage_row(const char* name, const std::string& code_name) {
         std::vector<std::string> cells;
         for (const int block : {1, 4, 16})
             cells.push_back(fmt::format("{:.5f}", patch_errors(read, reference, block).rms));
-        return table_row(name, std::vector<double>(3, NAN), cells);
+        return table_row(name, cells);
     }
     throw std::invalid_argument("no code " + code_name);
 }
@@ -189,7 +189,7 @@ std::string blend_row(double base_slope, double detail_slope, bool is_carved) {
         blend_normals(blended, normals_image(blend_side, blend_side, detail), method, report);
         const ErrorStats error = normal_error(blended, reference);
         ranks.push_back(error.rms);
-        cells.push_back(in_digits(error.rms) + " / " + in_digits(error.max));
+        cells.push_back(rms_and_max(error));
     }
     return table_row(fmt::format("{:g} and {:g}", base_slope, detail_slope), ranks, cells);
 }
@@ -243,7 +243,7 @@ std::string mip_row(double rms_slope) {
         fmt::format("{:.4f}", toksvig),
         fmt::format("{:.3f}", roughness_with_variance(base, reference)),
         fmt::format("{:.3f}", roughness_with_variance(base, found))};
-    return table_row(fmt::format("rms slope {:g}", rms_slope), std::vector<double>(6, NAN), cells);
+    return table_row(fmt::format("rms slope {:g}", rms_slope), cells);
 }
 
 }  // namespace
@@ -260,12 +260,9 @@ std::string mip_tables() {
 }
 
 std::vector<PageSection> normal_map_tables() {
-    const auto section = [](const std::string& name, const std::string& text) {
-        return PageSection{fmt::format("<!-- {}: written by relief-documents -->\n", name),
-                           text + "\n"};
-    };
-    return {section("blending", blend_tables()), section("resizing", resize_tables()),
-            section("storage", storage_tables()), section("mips", mip_tables())};
+    return {written_section("blending", blend_tables()),
+            written_section("resizing", resize_tables()),
+            written_section("storage", storage_tables()), written_section("mips", mip_tables())};
 }
 
 }  // namespace relief::test

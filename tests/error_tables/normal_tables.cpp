@@ -36,7 +36,7 @@ std::string surface_table(const char* title, Triangulation triangulation) {
         for (const NormalMethod& method : weightings()) {
             const ErrorStats error = normal_errors(method.compute(reference.mesh), reference);
             ranks.push_back(error.rms);
-            entries.push_back(in_digits(error.rms) + " / " + in_digits(error.max));
+            entries.push_back(rms_and_max(error));
         }
         text += table_row(name_of(surface), ranks, entries);
     }
@@ -73,7 +73,7 @@ std::vector<PageSection> normal_tables() {
         surface_table("Folded: points moved by up to 0.6 cells, some triangles inverted",
                       Triangulation::folded) +
         fan_table();
-    return {{"<!-- tables: written by relief-documents -->\n", text + "\n"}};
+    return {written_section("tables", text)};
 }
 
 }  // namespace relief::test

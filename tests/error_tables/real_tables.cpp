@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "error_tables/error_tables.h"
+#include "experiment_parts.h"
 #include "relief/accuracy/asset.h"
 #include "relief/accuracy/bake_accuracy.h"
 #include "relief/mesh/bake.h"
@@ -23,13 +24,14 @@
 
 namespace relief::test {
 using namespace relief::accuracy;
+using namespace relief::accuracy::detail;
 
 namespace {
 
 const std::vector<std::string> statistics = {"RMS", "99 %", "maximum"};
 
-std::string row(const std::string& name, const ErrorStats& error) {
-    return fmt::format("| {} | {} | {} | {} |\n", name, in_digits(error.rms), in_digits(error.p99),
+std::string cells_of(const ErrorStats& error) {
+    return fmt::format(" {} | {} | {} |", in_digits(error.rms), in_digits(error.p99),
                        in_digits(error.max));
 }
 
@@ -58,8 +60,8 @@ const std::vector<AssetExperiment>& cloth_experiments() {
 std::string table_of(std::string_view topic) {
     std::string text = table_header(statistics);
     for (const Measurement& one : experiment_of(cloth_experiments(), topic).measurements)
-        text += row(one.method, one.error);
-    return text + "\n";
+        text += fmt::format("| {} |{}\n", one.method, cells_of(one.error));
+    return text;
 }
 
 Image decoded_normals(const Image& level) {
@@ -82,29 +84,23 @@ ErrorStats error_in(const Image& normals, TextureFormat format, BlockQuality qua
             encode_texture_level(encode_normal_map(normals, exact), format, quality));
     }
     const Image stored = decoded_normals(decode_texture_level(texture, 0));
-    const std::span<const float> a = normals.as<float>(), b = stored.as<float>();
-    std::vector<float> degrees(a.size() / 3);
-    for (std::size_t i = 0; i < degrees.size(); ++i) {
-        degrees[i] = static_cast<float>(degrees_between({a[3 * i], a[3 * i + 1], a[3 * i + 2]},
-                                                        {b[3 * i], b[3 * i + 1], b[3 * i + 2]}));
-    }
-    return error_stats(std::move(degrees));
+    return map_errors(stored, directions_of(normals));
 }
 
 }  // namespace
 
 std::vector<PageSection> real_normal_table() {
-    return {{"<!-- table of a real model: written by relief-documents -->\n",
-             "\n" + table_of("/normals")}};
+    return {written_section("table of a real model", "\n" + table_of("/normals"))};
 }
 
 std::vector<PageSection> real_tangent_tables() {
-    return {{"<!-- table of a real model: written by relief-documents -->\n",
-             "\nBetween averaged tangents and the gradient of the texture, in degrees\n\n" +
-                 table_of("/tangents") +
-                 "Of texels that are tilted by 30 degrees, if a map for MikkTSpace is read in "
-                 "another basis, in degrees\n\n" +
-                 table_of("/tangent-basis")}};
+    return {written_section(
+        "table of a real model",
+        "\nBetween averaged tangents and the gradient of the texture, in degrees\n\n" +
+            table_of("/tangents") +
+            "\nOf texels that are tilted by 30 degrees, if a map for MikkTSpace is read in another "
+            "basis, in degrees\n\n" +
+            table_of("/tangent-basis"))};
 }
 
 std::vector<PageSection> real_bump_table() {
@@ -117,7 +113,7 @@ std::vector<PageSection> real_bump_table() {
         text += fmt::format("| {} | {:.2g} | {:.2g} | {:.2g} | {:.2g} |\n", name, one.rms_degrees,
                             one.mean_degrees, one.p99_degrees, one.max_degrees);
     }
-    return {{"<!-- table of a real map: written by relief-documents -->\n", text + "\n"}};
+    return {written_section("table of a real map", text)};
 }
 
 std::vector<PageSection> real_bake_table() {
@@ -135,14 +131,12 @@ std::vector<PageSection> real_bake_table() {
     std::string text =
         "\n" + table_header({"8 bit: RMS", "99 %", "maximum", "16 bit: RMS", "99 %", "maximum"});
     for (const int samples : {1, 4, 16, 64}) {
-        const BakeMeasurement measured = measure_bake(reference, {samples, {}}, formats);
         text += fmt::format("| `--samples {}` |", samples);
-        for (const ErrorStats& error : measured.errors)
-            text += fmt::format(" {} | {} | {} |", in_digits(error.rms), in_digits(error.p99),
-                                in_digits(error.max));
+        for (const MeasuredBake& bake : measure_bake(reference, {samples, {}}, formats))
+            text += cells_of(bake.error);
         text += "\n";
     }
-    return {{"<!-- table of a real model: written by relief-documents -->\n", text + "\n"}};
+    return {written_section("table of a real model", text)};
 }
 
 std::vector<PageSection> real_compression_table() {
@@ -164,7 +158,7 @@ std::vector<PageSection> real_compression_table() {
         text += fmt::format("| {} | {} | {} | {} |\n", code.name, in_digits(error.mean),
                             in_digits(error.p99), in_digits(error.max));
     }
-    return {{"<!-- table of a real map: written by relief-documents -->\n", text + "\n"}};
+    return {written_section("table of a real map", text)};
 }
 
 }  // namespace relief::test

@@ -42,10 +42,6 @@ const std::vector<NamedMesh>& meshes() {
     return all;
 }
 
-std::string rms_and_max(const ErrorStats& errors) {
-    return in_digits(errors.rms) + " / " + in_digits(errors.max);
-}
-
 constexpr double not_compared = std::numeric_limits<double>::quiet_NaN();
 
 /// Returns a table with one row for each mesh; measured(reference, frames) returns the errors. The
@@ -81,8 +77,7 @@ std::string method_tables() {
                         [](const TexturedMesh& reference, const TangentFrames& frames) {
                             return error_stats(corner_tangent_angles(reference, frames.tangents));
                         }) +
-           method_table("The tangent's direction inside triangles", false, inner_tangent_errors) +
-           "\n";
+           method_table("The tangent's direction inside triangles", false, inner_tangent_errors);
 }
 
 /// Costs of methods, measured by bench/frame_costs_bench.cpp with interleaved runs. A test cannot
@@ -117,9 +112,9 @@ std::string cost_table() {
         }
         const MeasuredCost& cost = measured_costs.at(i);
         cells.insert(cells.end(), {cost.computing, cost.bytes, cost.device});
-        text += table_row(cost.method, std::vector(cells.size(), not_compared), cells);
+        text += table_row(cost.method, cells);
     }
-    return text + "\n";
+    return text;
 }
 
 std::string mismatch_table(const std::string& title, const TexturedMesh& reference) {
@@ -150,7 +145,7 @@ std::string mismatch_tables() {
            mismatch_table("On a coarse torus, 16 x 16 cells, regular",
                           textured_mesh(AnalyticSurface::torus, Triangulation::regular,
                                         TextureLayout::upright, 16, 1)) +
-           mismatch_table("On the plate with thin bevels", beveled_plate(0.02)) + "\n";
+           mismatch_table("On the plate with thin bevels", beveled_plate(0.02));
 }
 
 std::string encoding_tables() {
@@ -175,24 +170,19 @@ std::string encoding_tables() {
                 mean_and_max(errors.tangent),
                 mean_and_max(errors.texel),
                 fmt::format("{}", errors.flipped_frames)};
-            text += table_row(fmt::format("`{}`", enum_name(encoding)),
-                              std::vector(cells.size(), not_compared), cells);
+            text += table_row(fmt::format("`{}`", enum_name(encoding)), cells);
         }
     }
-    return text + "\n";
-}
-
-std::string begin_of(const char* name) {
-    return fmt::format("<!-- tables of {}: written by relief-documents -->\n", name);
+    return text;
 }
 
 }  // namespace
 
 std::vector<PageSection> tangent_tables() {
-    return {{begin_of("methods"), method_tables()},
-            {begin_of("bases"), mismatch_tables()},
-            {begin_of("costs"), cost_table()},
-            {begin_of("encodings"), encoding_tables()}};
+    return {written_section("tables of methods", method_tables()),
+            written_section("tables of bases", mismatch_tables()),
+            written_section("tables of costs", cost_table()),
+            written_section("tables of encodings", encoding_tables())};
 }
 
 }  // namespace relief::test

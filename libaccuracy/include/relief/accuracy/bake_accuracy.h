@@ -26,23 +26,24 @@ struct BakeSampling {
     std::optional<double> sample_degrees{};
 };
 
-/// The errors and times of one bake in several formats.
-struct BakeMeasurement {
-    std::vector<ErrorStats> errors;  ///< By format, against the mean normal over the texel.
-    /// By format, the error of rounding to codes alone, which more samples do not reduce.
-    std::vector<ErrorStats> quantization;
-    ErrorStats sampling;             ///< The error of sampling alone, which no format reduces.
-    std::vector<ErrorStats> center;  ///< By format, against the normal at the texel's center.
+/// A sampling in one format, with its measured error on a part of the map.
+struct MeasuredBake {
+    BakeSampling sampling;
+    NormalMapFormat format;
+    ErrorStats error;           ///< Against the mean normal over the texel.
+    ErrorStats quantization;    ///< The error of the format alone, which no sample reduces.
+    ErrorStats sampling_error;  ///< The error of the samples alone, which no format reduces.
+    ErrorStats center;          ///< The error against the normal at the texel's center.
     std::size_t rays = 0;
-    double cast_seconds = 0.0;         ///< The time of the bake without encoding.
-    std::vector<double> code_seconds;  ///< The time of encoding, by format.
+    double seconds = 0.0;            ///< The time of the bake and its encoding.
+    bool is_pareto_optimal = false;  ///< By compare_bakes(): none is faster and more accurate.
 };
 
-/// Bakes and encodes in memory, and compares the result with the reference.
-BakeMeasurement measure_bake(const BakeReference& reference, const BakeSampling& sampling,
-                             std::span<const NormalMapFormat> formats);
+/// Bakes once, encodes in each format in memory, and compares the results with the reference.
+std::vector<MeasuredBake> measure_bake(const BakeReference& reference, const BakeSampling& sampling,
+                                       std::span<const NormalMapFormat> formats);
 
-/// Computes BakeMeasurement::errors for each texel: one float channel in degrees, NaN without a
+/// Computes MeasuredBake::error for each texel: one float channel in degrees, NaN without a
 /// reference. If the reference has only bands of the map, they are stacked.
 Image bake_error_map(const BakeReference& reference, const BakeSampling& sampling,
                      const NormalMapFormat& format);
@@ -53,18 +54,6 @@ std::span<const BakeSampling> default_bake_samplings();
 
 /// Returns variants of `format`: 8 bits, 8 bits with blue-noise dithering, 16 bits, and float.
 std::vector<NormalMapFormat> default_map_formats(const NormalMapFormat& format);
-
-/// A sampling in one format, with its measured error on a part of the map.
-struct MeasuredBake {
-    BakeSampling sampling;
-    NormalMapFormat format;
-    ErrorStats error;
-    ErrorStats quantization;    ///< The error of the format alone.
-    ErrorStats sampling_error;  ///< The error of the samples alone.
-    std::size_t rays = 0;
-    double seconds = 0.0;            ///< The time of the bake and its encoding.
-    bool is_pareto_optimal = false;  ///< By compare_bakes(): none is faster and more accurate.
-};
 
 /// The bakes that were measured, and the part of the map that they were measured on.
 struct BakeComparison {
