@@ -22,6 +22,7 @@
 #include "geometry/smooth_fans.h"
 #include "geometry/triangle_stacks.h"
 #include "geometry/value_order.h"
+#include "geometry/vertex_tangents.h"
 #include "geometry/weld.h"
 #include "large_memory.h"
 #include "parallel.h"
@@ -187,6 +188,18 @@ void append_copies(std::vector<T>& values, std::span<const std::uint32_t> copied
     values = std::move(extended);
 }
 
+/// Appends copies of vertices, with all their attributes.
+void append_vertices(FramedMesh& framed, std::span<const std::uint32_t> copied) {
+    Mesh& mesh = framed.mesh;
+    append_copies(framed.source_vertex, copied);
+    append_copies(mesh.positions, copied);
+    append_copies(mesh.normals, copied);
+    append_copies(mesh.texcoords, copied);
+    append_copies(mesh.texcoords_2, copied);
+    append_copies(mesh.tangents, copied);
+    append_copies(mesh.colors, copied);
+}
+
 /// Splits vertices whose corners have different values, then stores the values by vertex. A vertex
 /// without a corner gets the value of `isolated`. -0 becomes +0, so that it does not distinguish
 /// vertices. Most meshes need few copies, so that arrays are not copied as a whole.
@@ -196,14 +209,7 @@ void store_corners(FramedMesh& framed, std::span<const T> values, std::vector<T>
     Mesh& mesh = framed.mesh;
     (mesh.*attribute).clear();
     const CornerSurvey survey = survey_corners<T>(mesh.positions.size(), mesh.triangles, values);
-    const std::vector<std::uint32_t> copied = split_differing(survey, values, mesh.triangles);
-    append_copies(framed.source_vertex, copied);
-    append_copies(mesh.positions, copied);
-    append_copies(mesh.normals, copied);
-    append_copies(mesh.texcoords, copied);
-    append_copies(mesh.texcoords_2, copied);
-    append_copies(mesh.tangents, copied);
-    append_copies(mesh.colors, copied);
+    append_vertices(framed, split_differing(survey, values, mesh.triangles));
     std::vector<T> stored;
     reserve_to_fill(stored, mesh.positions.size());
     for (const Corner corner : survey.any_corner)
@@ -351,17 +357,46 @@ void make_normals(FramedMesh& framed, NormalMode mode, const FrameOptions& optio
     }
 }
 
+/// Returns the tangent of a vertex without a triangle.
+glm::vec4 isolated_tangent(const Mesh& mesh, std::size_t vertex, Report& report) {
+    report.add("tangent of an isolated vertex", "vertex", vertex,
+               "is a fixed direction perpendicular to its normal");
+    return {perpendicular_to(mesh.normals[vertex]), -1.0F};
+}
+
 void store_corner_tangents(FramedMesh& framed, std::span<const glm::vec4> at_corners,
                            Report& report) {
     store_corners<glm::vec4>(framed, at_corners, &Mesh::tangents, [&](std::size_t vertex) {
-        report.add("tangent of an isolated vertex", "vertex", vertex,
-                   "is a fixed direction perpendicular to its normal");
-        return glm::vec4(perpendicular_to(framed.mesh.normals[vertex]), -1.0F);
+        return isolated_tangent(framed.mesh, vertex, report);
     });
 }
 
+/// Does the same for tangents by vertex, with some triangles whose corners may differ.
+void store_vertex_tangents(FramedMesh& framed, VertexTangents tangents, Report& report) {
+    Mesh& mesh = framed.mesh;
+    std::vector<glm::uvec3> triangles;
+    triangles.reserve(tangents.triangles.size());
+    for (const std::uint32_t t : tangents.triangles)
+        triangles.push_back(mesh.triangles[t]);
+    if (!triangles.empty()) {
+        const std::span<const glm::vec4> values = tangents.at_corners;
+        const CornerSurvey survey = survey_corners(mesh.positions.size(), triangles, values);
+        append_vertices(framed, split_differing(survey, values, triangles));
+        tangents.by_vertex.resize(mesh.positions.size());
+        for (Corner corner = 0; corner < values.size(); ++corner)
+            tangents.by_vertex[vertex_of(corner, triangles)] = values[corner];
+        for (std::size_t i = 0; i < triangles.size(); ++i)
+            mesh.triangles[tangents.triangles[i]] = triangles[i];
+    }
+    for (std::size_t v = 0; v < tangents.by_vertex.size(); ++v) {
+        glm::vec4& tangent = tangents.by_vertex[v];
+        tangent = tangent == glm::vec4(0.0F) ? isolated_tangent(mesh, v, report) : tangent + 0.0F;
+    }
+    mesh.tangents = std::move(tangents.by_vertex);
+}
+
 void make_tangents(FramedMesh& framed, TangentMethod mode, Report& report) {
-    const Mesh& mesh = framed.mesh;
+    Mesh& mesh = framed.mesh;
     const auto store_by = [&](const auto& method) {
         const std::vector<glm::vec4> tangents =
             method(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, report);
@@ -369,10 +404,12 @@ void make_tangents(FramedMesh& framed, TangentMethod mode, Report& report) {
     };
     if (mode == TangentMethod::area_weighted) return store_by(area_weighted_tangents);
     if (mode == TangentMethod::lengyel) return store_by(lengyel_tangents);
-    // The largest array of all: it is not cleared first, and all threads touch its pages.
-    WorkArray<glm::vec4> tangents(3 * mesh.triangles.size());
-    corner_tangents(mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, tangents, report);
-    store_corner_tangents(framed, tangents, report);
+    VertexTangents tangents =
+        tangents_by_vertex({mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles}, report);
+    if (!tangents.by_vertex.empty())
+        store_vertex_tangents(framed, std::move(tangents), report);
+    else
+        store_corner_tangents(framed, tangents.at_corners, report);
 }
 
 /// Resolves `keep` for tangents. Tangents belong to the normals from which they were computed, so a

@@ -494,4 +494,10 @@ TriangleGradients compute_contributions(const TangentInput& input, TangentWeight
     return gradients;
 }
 
+void compute_contributions(const TangentInput& input, std::span<glm::vec4> contributions,
+                           std::span<Gradient> kinds, std::vector<std::uint32_t>& without) {
+    const Job job{input, contributions, kinds};
+    compute_contributions_of<TangentWeight::angle>(job, 0, input.triangles.size(), without);
+}
+
 }  // namespace relief::detail

@@ -163,4 +163,12 @@ struct TriangleGradients {
 TriangleGradients compute_contributions(const TangentInput& input, TangentWeight weight,
                                         std::span<glm::vec4> contributions);
 
+/// Computes the same for a few triangles, with weights by angle, on this thread only.
+///
+/// \param contributions  memory for at least three per triangle
+/// \param kinds  memory for at least one per triangle
+/// \param without  gets the triangles without a gradient; ascending
+void compute_contributions(const TangentInput& input, std::span<glm::vec4> contributions,
+                           std::span<Gradient> kinds, std::vector<std::uint32_t>& without);
+
 }  // namespace relief::detail

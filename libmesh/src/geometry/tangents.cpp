@@ -32,6 +32,7 @@
 #include "geometry/tangent_contributions.h"
 #include "geometry/tangent_groups.h"
 #include "geometry/tangent_signs.h"
+#include "geometry/vertex_tangents.h"
 #include "geometry/weld.h"
 #include "large_memory.h"
 #include "parallel.h"
@@ -214,9 +215,28 @@ void report_normals(StridedSpan<const glm::vec3> normals, Report& report) {
                            });
 }
 
-void report_triangles(const TriangleGradients& gradients, Report& report) {
-    for (const std::uint32_t triangle : gradients.without) {
-        switch (gradients.kinds[triangle]) {
+/// The numbers of triangles and corners in the mesh if only some of its triangles are computed.
+class MeshNumbers {
+  public:
+    MeshNumbers() = default;
+    /// \param triangles  ascending; empty: all
+    explicit MeshNumbers(std::span<const std::uint32_t> triangles) : triangles_(triangles) {}
+    [[nodiscard]] std::uint32_t triangle(std::uint32_t index) const {
+        return triangles_.empty() ? index : triangles_[index];
+    }
+    [[nodiscard]] Corner corner(Corner index) const {
+        return 3 * triangle(triangle_of(index)) + index % 3;
+    }
+
+  private:
+    std::span<const std::uint32_t> triangles_;
+};
+
+void report_triangles(const TriangleGradients& gradients, const MeshNumbers& numbers,
+                      Report& report) {
+    for (const std::uint32_t index : gradients.without) {
+        const std::uint32_t triangle = numbers.triangle(index);
+        switch (gradients.kinds[index]) {
             case Gradient::upright:
             case Gradient::mirrored:
                 break;
@@ -236,17 +256,19 @@ void report_triangles(const TriangleGradients& gradients, Report& report) {
     }
 }
 
-void report_groups(const GroupFindings& findings, Report& report) {
+void report_groups(const GroupFindings& findings, const MeshNumbers& numbers, Report& report) {
     for (const GroupFindings::Repeated& repeated : findings.repeated) {
-        report.add("repeated triangle", "triangle", repeated.triangle,
+        report.add("repeated triangle", "triangle", numbers.triangle(repeated.triangle),
                    "counts once and gets the same tangents");
     }
     for (const Corner corner : findings.along_normal) {
-        report.add("texture direction along the normal", "corner", corner,
+        report.add("texture direction along the normal", "corner", numbers.corner(corner),
                    "gets the tangent of other corners at its vertex");
     }
-    for (const Corner corner : findings.cancelled)
-        report.add("cancelling tangents", "corner", corner, "keeps the tangent of its triangle");
+    for (const Corner corner : findings.cancelled) {
+        report.add("cancelling tangents", "corner", numbers.corner(corner),
+                   "keeps the tangent of its triangle");
+    }
 }
 
 /// Triangles with indices of welded vertices. Copies nothing if all vertices differ.
@@ -264,21 +286,20 @@ class WeldedTriangles {
         triangles_ = welded_;
     }
     [[nodiscard]] TriangleSpan get() const { return triangles_; }
+    /// Returns whether all vertices differ.
+    [[nodiscard]] bool is_unchanged() const { return welded_.size() == 0; }
 
   private:
     WorkArray<glm::uvec3> welded_;
     TriangleSpan triangles_;
 };
 
+/// \param input  triangles with indices of welded vertices; all triangles at vertices without a
+///               usual tangent, at least
 /// \param tangents  three per triangle
-void compute_tangents(TangentInput input, TangentWeight weight, TangentGroups groups,
-                      std::span<glm::vec4> tangents, Report& report) {
-    ProgressStage stage("tangents", 6);
-    check(input);
-    const WeldedTriangles welded(input);
-    input.triangles = welded.get();
-    stage.advance(1);
-
+void compute_welded_tangents(const TangentInput& input, TangentWeight weight, TangentGroups groups,
+                             const MeshNumbers& numbers, std::span<glm::vec4> tangents,
+                             ProgressStage& stage, Report& report) {
     const TriangleGradients gradients = compute_contributions(input, weight, tangents);
     stage.advance(1);
     const CornersByVertex corners(input.positions.size(), input.triangles,
@@ -291,12 +312,23 @@ void compute_tangents(TangentInput input, TangentWeight weight, TangentGroups gr
     stage.advance(1);
 
     report_normals(input.normals, report);
-    report_triangles(gradients, report);
-    report_groups(findings, report);
+    report_triangles(gradients, numbers, report);
+    report_groups(findings, numbers, report);
     for (const Corner corner : fill_open_corners(group_input, findings, tangents)) {
-        report.add("corner without texture direction", "corner", corner,
+        report.add("corner without texture direction", "corner", numbers.corner(corner),
                    "gets a fixed tangent perpendicular to its normal");
     }
+}
+
+/// \param tangents  three per triangle
+void compute_tangents(TangentInput input, TangentWeight weight, TangentGroups groups,
+                      std::span<glm::vec4> tangents, Report& report) {
+    ProgressStage stage("tangents", 6);
+    check(input);
+    const WeldedTriangles welded(input);
+    input.triangles = welded.get();
+    stage.advance(1);
+    compute_welded_tangents(input, weight, groups, MeshNumbers(), tangents, stage, report);
 }
 
 std::vector<glm::vec4> tangents_of(const TangentInput& input, TangentWeight weight,
@@ -349,7 +381,65 @@ void settle_differing(std::span<const glm::vec4> of_corners, TriangleSpan triang
     }
 }
 
+/// Computes the tangents of the corners of all triangles.
+VertexTangents at_all_corners(const TangentInput& input, ProgressStage& stage, Report& report) {
+    VertexTangents tangents{{}, {}, WorkArray<glm::vec4>(3 * input.triangles.size())};
+    compute_welded_tangents(input, TangentWeight::angle, TangentGroups::connected, MeshNumbers(),
+                            tangents.at_corners, stage, report);
+    return tangents;
+}
+
+/// Computes the tangents of the corners of triangles at vertices that are not usual.
+VertexTangents at_unusual_vertices(TangentInput input, UsualTangents usual, ProgressStage& stage,
+                                   Report& report) {
+    VertexTangents tangents{std::move(usual.by_vertex), {}, {}};
+    if (!usual.any_unusual) {
+        report_normals(input.normals, report);
+        return tangents;
+    }
+    std::vector<glm::uvec3> triangles;
+    for (std::uint32_t t = 0; t < input.triangles.size(); ++t) {
+        const glm::uvec3 triangle = input.triangles[t];
+        if ((usual.is_unusual[triangle.x] | usual.is_unusual[triangle.y] |
+             usual.is_unusual[triangle.z]) == 0)
+            continue;
+        triangles.push_back(triangle);
+        tangents.triangles.push_back(t);
+    }
+    input.triangles = triangles;
+    tangents.at_corners = WorkArray<glm::vec4>(3 * triangles.size());
+    compute_welded_tangents(input, TangentWeight::angle, TangentGroups::connected,
+                            MeshNumbers(tangents.triangles), tangents.at_corners, stage, report);
+    for (Corner corner = 0; corner < 3 * triangles.size(); ++corner) {
+        const std::uint32_t vertex = vertex_of(corner, input.triangles);
+        if (usual.is_unusual[vertex] == 0) tangents.at_corners[corner] = tangents.by_vertex[vertex];
+    }
+    return tangents;
+}
+
 }  // namespace
+
+namespace detail {
+
+VertexTangents tangents_by_vertex(const TangentInput& input, Report& report) {
+    ProgressStage stage("tangents", 6);
+    check(input);
+    const WeldedTriangles welded(input);
+    stage.advance(1);
+    TangentInput mesh = input;
+    mesh.triangles = welded.get();
+    if (!welded.is_unchanged()) return at_all_corners(mesh, stage, report);
+    UsualTangents usual;
+    {
+        const CornersByVertex corners(mesh.positions.size(), mesh.triangles);
+        if (has_local_triangles(corners, mesh.triangles.size()))
+            usual = usual_tangents(mesh, corners);
+    }
+    if (usual.by_vertex.empty()) return at_all_corners(mesh, stage, report);
+    return at_unusual_vertices(mesh, std::move(usual), stage, report);
+}
+
+}  // namespace detail
 
 std::vector<glm::vec4> mikktspace_tangents(StridedSpan<const glm::vec3> positions,
                                            StridedSpan<const glm::vec3> normals,

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
+#include "relief/mesh/execution.h"
 #include "relief/mesh/report.h"
 #include "relief/mesh/tangents.h"
 #include "support/hard_meshes.h"
@@ -270,6 +272,69 @@ TEST(Frames, TheOrderOfTrianglesChangesNoVertex) {
         EXPECT_TRUE(test::same_bits(other.mesh.normals, one.mesh.normals));
         EXPECT_TRUE(test::same_bits(other.mesh.tangents, one.mesh.tangents));
     }
+}
+
+/// Returns a grid of several slices of triangles, with vertices that are not usual in each of them.
+Mesh grid_with_hard_places() {
+    Mesh mesh = test::grid(120);
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        glm::vec2& texcoord = mesh.texcoords[v];
+        if (v % 97 == 0) texcoord.y = 0.5F;  // Skewed or mirrored triangles.
+        if (v % 121 > 90) texcoord.x = 1.5F - texcoord.x;
+    }
+    const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+    for (std::uint32_t t = 5; t < count; t += 997) {
+        glm::uvec3& triangle = mesh.triangles[t];
+        if (t % 3 == 0)
+            triangle.y = triangle.x;
+        else if (t % 3 == 1)
+            mesh.triangles.push_back(triangle);
+        else
+            mesh.texcoords[triangle.z] = mesh.texcoords[triangle.x];
+    }
+    // Triangles with vertices in distant slices, a vertex that is not finite, one of many
+    // triangles, and an isolated one.
+    mesh.triangles.emplace_back(3, 14000, 7200);
+    mesh.positions[5000].x = std::numeric_limits<float>::quiet_NaN();
+    for (std::uint32_t i = 0; i < 20; ++i)
+        mesh.triangles.emplace_back(9000, 9300 + 2 * i, 9301 + 2 * i);
+    mesh.normals[8000] = glm::vec3(0.0F);
+    mesh.positions.emplace_back(7, 7, 7);
+    mesh.normals.emplace_back(1, 0, 0);
+    mesh.texcoords.emplace_back(0, 0);
+    return mesh;
+}
+
+TEST(Frames, TangentsByVertexAreThoseOfCorners) {
+    const Mesh mesh = grid_with_hard_places();
+    Report by_corner_report;
+    const std::vector<glm::vec4> at_corners = mikktspace_tangents(
+        mesh.positions, mesh.normals, mesh.texcoords, mesh.triangles, by_corner_report);
+    for (const int threads : {1, 3}) {
+        SCOPED_TRACE(threads);
+        set_thread_limit(threads);
+        Report report;
+        const FramedMesh result = with_frames(mesh, with_tangents(NormalMode::keep), report);
+        set_thread_limit(0);
+        std::vector<glm::vec4> of_vertices;
+        std::vector<glm::vec4> expected;
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+            for (int i = 0; i < 3; ++i) {
+                of_vertices.push_back(result.mesh.tangents[result.mesh.triangles[t][i]]);
+                expected.push_back(at_corners[3 * t + static_cast<std::size_t>(i)] + 0.0F);
+            }
+        }
+        EXPECT_TRUE(test::same_bits(of_vertices, expected));
+        expect_carried(mesh, result);
+        EXPECT_EQ(result.mesh.tangents[mesh.positions.size() - 1], glm::vec4(0, 1, 0, -1));
+        EXPECT_GT(result.mesh.positions.size(), mesh.positions.size() + 121);
+        for (const Finding& finding : by_corner_report.findings())
+            EXPECT_THAT(report.findings(), testing::Contains(finding)) << to_string(finding);
+    }
+    EXPECT_GT(by_corner_report.count("repeated triangle"), 5U);
+    EXPECT_GT(by_corner_report.count("triangle with coinciding corners"), 5U);
+    EXPECT_GT(by_corner_report.count("triangle without texture gradient"), 5U);
+    EXPECT_GT(by_corner_report.count("triangle with non-finite values"), 0U);
 }
 
 TEST(Frames, RefusesImpossibleRequests) {

@@ -6,8 +6,10 @@
 #include <atomic>
 #include <cstdlib>
 #include <new>
+#include <utility>
 
 #include "relief/mesh/execution.h"
+#include "relief/mesh/frames.h"
 #include "relief/mesh/normals.h"
 #include "relief/mesh/tangents.h"
 #include "support/labels.h"
@@ -128,6 +130,22 @@ TEST(BufferMemory, InterleavedVerticesAndShortIndicesAreNotCopied) {
     EXPECT_LE(peak_of([&] { vertex_tangents(positions, normals, texcoords, triangles, tangents); }),
               tangents_peak);
     EXPECT_EQ(vertices[count / 2].tangent, glm::vec4(1.0F, 0.0F, 0.0F, 1.0F));
+    set_thread_limit(0);
+}
+
+TEST(BufferMemory, FramesNeedLessMemoryThanTangentsOfCorners) {
+    Mesh mesh = test::grid(400);
+    const std::size_t triangles = mesh.triangles.size();
+    const std::size_t corner_tangents = 3 * triangles * sizeof(glm::vec4);
+    Report report;
+    set_thread_limit(1);
+    // The tangents of vertices, the corners at each, and the contributions of a slice.
+    EXPECT_LT(peak_of([&] {
+                  (void)with_frames(
+                      std::move(mesh),
+                      {NormalMode::keep, NormalWeight::angle, TangentMethod::mikktspace}, report);
+              }),
+              corner_tangents * 3 / 4);
     set_thread_limit(0);
 }
 
