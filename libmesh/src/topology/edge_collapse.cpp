@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edge collapses in passes: costs, checks of normals and textures, parallel execution, and the
-// adjustment of positions at the end. Tests: tests/mesh/topology/decimate_test.cpp.
+// Edge collapses in passes: costs, checks of normals and textures, and parallel execution. Tests:
+// tests/mesh/topology/decimate_test.cpp.
 #include "topology/edge_collapse.h"
 
 #include <algorithm>
@@ -18,8 +18,9 @@
 #include "portable_math.h"
 #include "relaxed_store.h"
 #include "topology/collapse_deviation.h"
+#include "topology/collapse_fit.h"
+#include "topology/collapse_normals.h"
 #include "topology/edge_collapse_parts.h"
-#include "topology/touched_surface.h"
 #include "topology/triangle_distance.h"
 
 namespace relief::detail {
@@ -41,13 +42,6 @@ struct LinkedMove {
 /// The maximum rotation of a triangle in one move: about 78 degrees. Several moves may add up; see
 /// Collapser::is_near_normals().
 constexpr double min_turn_cosine = 0.2;
-
-/// The same for the adjustment of positions at the end: 45 degrees.
-constexpr double min_fit_cosine = 0.7071067811865476;
-
-/// A vertex is sharp if the normal of one of its triangles differs by more than this angle, 60
-/// degrees, from their mean.
-constexpr double min_smooth_cosine = 0.5;
 
 /// The maximum distance of a vertex from the triangles that replace it, relative to the size of its
 /// connected part. Half of a square and a corner of a cube are farther away, which are their shape.
@@ -73,7 +67,6 @@ constexpr std::uint8_t is_careful = 2;  ///< The cheapest collapse was refused o
                                         ///< are made when the cost is computed.
 constexpr std::uint8_t is_locked = 4;
 constexpr std::uint8_t is_linked = 16;  ///< Other vertices have its position and move with it.
-constexpr std::uint8_t is_sharp = 8;    ///< See min_smooth_cosine.
 
 class Collapser {
   public:
@@ -86,21 +79,14 @@ class Collapser {
         return {values[0], values[1]};
     }
 
-    [[nodiscard]] glm::dvec3 cross_of(std::size_t triangle) const;
     void add_triangle(std::size_t triangle);
-    void prepare_normals();
-    void list_normals();
 
     [[nodiscard]] bool may_move(std::uint32_t vertex, const Ring& ring) const;
     [[nodiscard]] bool is_valid(std::uint32_t vertex, const Ring& ring, const Move& move) const;
     [[nodiscard]] bool keeps_part(std::uint32_t vertex, const Ring& ring, const Move& move) const;
     [[nodiscard]] bool turns_over(std::uint32_t vertex, Corner corner, const Move& move) const;
     [[nodiscard]] bool turns_texture_over(Corner corner, std::uint32_t wedge_after) const;
-    [[nodiscard]] bool has_normal_near(std::uint32_t vertex, const glm::dvec3& cross) const;
-    [[nodiscard]] bool is_near_normals(const glm::dvec3& cross, std::uint32_t a, std::uint32_t b,
-                                       std::uint32_t c) const;
     [[nodiscard]] bool leaves_normals(Corner corner, const Move& move) const;
-    [[nodiscard]] glm::dvec3 input_normal(std::size_t triangle) const;
     /// Costs of vertices whose neighborhood changed are not computed again until they are
     /// candidates: mostly they have become larger.
     [[nodiscard]] bool needs_cost(std::uint32_t vertex) const {
@@ -129,16 +115,7 @@ class Collapser {
     std::size_t execute_groups(std::span<const std::uint64_t> order, float limit);
     void run_pass(double fraction);
 
-    [[nodiscard]] bool may_be_at(std::uint32_t vertex, const Ring& ring, const glm::vec3& position);
-    /// The move of a vertex to where it fits the input.
-    struct Fit {
-        std::uint32_t vertex = none;
-        glm::dvec3 offset{0.0};  ///< In the unit of the points.
-    };
-    [[nodiscard]] std::vector<Fit> best_fits();
-    void shorten_far_moves(std::vector<Fit>& fits);
-    void fit_positions();
-    [[nodiscard]] std::vector<std::size_t> fitted_counts() const;
+    void fit_remaining();
     void start_anew();
     void compute_all_costs_anew(std::uint8_t flags);
     [[nodiscard]] Obstacles obstacles() const;
@@ -146,7 +123,8 @@ class Collapser {
     CollapseInput input_;
     std::vector<glm::vec3> original_positions_;  ///< If positions are fitted.
     CollapseSurface surface_;
-    std::optional<CollapseError> error_;          ///< If edges are to collapse.
+    std::optional<CollapseError> error_;          ///< If edges are to collapse,
+    std::optional<CollapseNormals> normals_;      ///< and then, too.
     std::optional<CollapseDeviation> deviation_;  ///< If the largest distance counts.
     double area_ = 0.0;                           ///< Of the input.
     std::atomic<std::size_t> postponed_ = 0;      ///< The collapses that moved the surface too far.
@@ -155,10 +133,6 @@ class Collapser {
     // By vertex:
     std::vector<float> costs_;  ///< CollapseError::priority() of the cheapest collapse.
     std::vector<std::uint8_t> flags_;
-    std::vector<glm::vec3> mean_normals_;  ///< The sum of the unit normals of the input, or 0.
-    // For sharp vertices; with a maximum angle of normals, for all; otherwise empty:
-    std::vector<std::uint32_t> normal_begin_;       ///< By vertex: its first entry in normals_at_.
-    std::vector<glm::vec3> normals_at_;             ///< The normals of the input at each vertex.
     std::vector<std::uint32_t> first_at_position_;  ///< Empty: no vertices share a position.
     std::vector<std::uint32_t> alive_;              ///< The vertices that may move, ascending.
     // Only if there are at least two groups:
@@ -184,13 +158,13 @@ Collapser::Collapser(CollapseInput input) : input_(std::move(input)), surface_(i
     if (triangles_ <= target_) return;
     error_.emplace(input_, surface_);
     if (input_.fits_positions) original_positions_ = input_.positions;
-    mean_normals_.assign(vertices, glm::vec3(0.0F));
+    normals_.emplace(input_, surface_);
     for (std::size_t t = 0; t < triangles; ++t)
         add_triangle(t);
     for (std::size_t t = 0; t < triangles; ++t)
         error_->add_lines(t);
     flags_.assign(vertices, 0);
-    prepare_normals();
+    normals_->finish();
     costs_.assign(vertices, no_collapse);
     if (input_.for_largest_distance && !input_.max_error) {
         deviation_.emplace(input_, surface_,
@@ -216,69 +190,14 @@ Collapser::Collapser(CollapseInput input) : input_(std::move(input)), surface_(i
     }
 }
 
-/// Returns the cross product of two edges of a triangle.
-glm::dvec3 Collapser::cross_of(std::size_t triangle) const {
-    const std::size_t first = 3 * triangle;
-    const glm::dvec3 a = input_.point(surface_[first].vertex);
-    return glm::cross(input_.point(surface_[first + 1].vertex) - a,
-                      input_.point(surface_[first + 2].vertex) - a);
-}
-
 void Collapser::add_triangle(std::size_t triangle) {
-    const glm::dvec3 cross = cross_of(triangle);
+    const glm::dvec3 cross = cross_of(input_, surface_, triangle);
     const double doubled_area = glm::length(cross);
     if (!(doubled_area > 0.0)) return;
     area_ += doubled_area / 2.0;
     const glm::dvec3 normal = cross / doubled_area;
-    for (std::size_t corner = 3 * triangle; corner < 3 * triangle + 3; ++corner)
-        mean_normals_[surface_[corner].vertex] += glm::vec3(normal);
+    normals_->add_triangle(triangle, normal);
     error_->add_triangle(triangle, normal, doubled_area);
-}
-
-/// Returns the unit normal of a triangle before any collapse; 0 without area.
-glm::dvec3 Collapser::input_normal(std::size_t triangle) const {
-    const glm::dvec3 cross = cross_of(triangle);
-    const double length = glm::length(cross);
-    return length > 0.0 ? cross / length : glm::dvec3(0.0);
-}
-
-/// Marks sharp vertices.
-void Collapser::prepare_normals() {
-    std::atomic<bool> has_sharp = false;
-    parallel_for(surface_.corners().size() / 3, group_size,
-                 [&](std::size_t begin, std::size_t end) {
-                     for (std::size_t t = begin; t < end; ++t) {
-                         const glm::dvec3 normal = input_normal(t);
-                         if (normal == glm::dvec3(0.0)) continue;
-                         for (std::size_t corner = 3 * t; corner < 3 * t + 3; ++corner) {
-                             const std::uint32_t vertex = surface_[corner].vertex;
-                             const glm::dvec3 mean(mean_normals_[vertex]);
-                             if (glm::dot(normal, mean) > min_smooth_cosine * glm::length(mean))
-                                 continue;
-                             // Other threads may write the same value.
-                             relaxed_store(flags_[vertex], is_sharp);
-                             has_sharp = true;
-                         }
-                     }
-                 });
-    if (has_sharp || input_.min_normal_cosine) list_normals();
-}
-
-void Collapser::list_normals() {
-    const auto is_listed = [&](std::uint32_t vertex) {
-        return input_.min_normal_cosine || (flags_[vertex] & is_sharp) != 0;
-    };
-    normal_begin_.assign(input_.positions.size() + 1, 0);
-    for (const CornerData& corner : surface_.corners()) {
-        if (is_listed(corner.vertex)) ++normal_begin_[corner.vertex + 1];
-    }
-    std::partial_sum(normal_begin_.begin(), normal_begin_.end(), normal_begin_.begin());
-    normals_at_.resize(normal_begin_.back());
-    std::vector<std::uint32_t> end(normal_begin_.begin(), normal_begin_.end() - 1);
-    for (std::size_t corner = 0; corner < surface_.corners().size(); ++corner) {
-        const std::uint32_t vertex = surface_[corner].vertex;
-        if (is_listed(vertex)) normals_at_[end[vertex]++] = glm::vec3(input_normal(corner / 3));
-    }
 }
 
 bool Collapser::may_move(std::uint32_t vertex, const Ring& ring) const {
@@ -309,43 +228,13 @@ bool Collapser::turns_texture_over(Corner corner, std::uint32_t wedge_after) con
     return before != 0.0 && !(before * area_from(texcoord(wedge_after)) > 0.0);
 }
 
-/// Returns whether a triangle of the input at a vertex has a normal within the maximum angle, or
-/// 90 degrees, of a cross product. At a vertex with more than max_valence triangles, a part of them
-/// is compared.
-///
-/// A cross product within 90 degrees of the sum of the normals is within 90 degrees of one of them.
-/// At vertices that are not sharp, only those are accepted.
-bool Collapser::has_normal_near(std::uint32_t vertex, const glm::dvec3& cross) const {
-    const glm::dvec3 mean(mean_normals_[vertex]);
-    if (!input_.min_normal_cosine && glm::dot(mean, cross) > 0.0) return true;
-    bool has_normal = mean != glm::dvec3(0.0);
-    const std::uint32_t begin = normal_begin_.empty() ? 0 : normal_begin_[vertex];
-    const std::uint32_t end = normal_begin_.empty() ? 0 : normal_begin_[vertex + 1];
-    const std::uint32_t step = 1 + (end - begin) / static_cast<std::uint32_t>(max_valence);
-    const double cosine = std::max(input_.min_normal_cosine.value_or(0.0), 0.0);
-    const double least = cosine * glm::length(cross);
-    for (std::uint32_t i = begin; i < end; i += step) {
-        const glm::dvec3 normal(normals_at_[i]);
-        if (normal == glm::dvec3(0.0)) continue;
-        if (glm::dot(normal, cross) >= least) return true;
-        has_normal = true;
-    }
-    return !has_normal;
-}
-
-/// Returns whether a triangle is near the input at each of its corners.
-bool Collapser::is_near_normals(const glm::dvec3& cross, std::uint32_t a, std::uint32_t b,
-                                std::uint32_t c) const {
-    return has_normal_near(a, cross) && has_normal_near(b, cross) && has_normal_near(c, cross);
-}
-
 /// Returns whether the normal of a moved triangle differs too much from those of the input.
 bool Collapser::leaves_normals(Corner corner, const Move& move) const {
     const std::uint32_t vb = surface_[next_in_triangle(corner)].vertex;
     const std::uint32_t vc = surface_[previous_in_triangle(corner)].vertex;
     const glm::dvec3 cross = glm::cross(input_.point(vb) - input_.point(move.target),
                                         input_.point(vc) - input_.point(move.target));
-    return !is_near_normals(cross, move.target, vb, vc);
+    return !normals_->is_near(cross, move.target, vb, vc);
 }
 
 /// Returns whether the connected part around a vertex keeps its shape: the triangles after the move
@@ -737,83 +626,13 @@ void Collapser::run_pass(double fraction) {
     }
 }
 
-/// Returns whether a vertex can be at another position: no triangle turns over or leaves the
-/// normals of the input. The vertex is there afterwards.
-bool Collapser::may_be_at(std::uint32_t vertex, const Ring& ring, const glm::vec3& position) {
-    const glm::dvec3 before = input_.point(vertex);
-    input_.positions[vertex] = position;
-    const glm::dvec3 after = input_.point(vertex);
-    for (std::size_t i = 0; i < ring.size; ++i) {
-        const std::uint32_t vb = surface_[next_in_triangle(ring.corners[i])].vertex;
-        const std::uint32_t vc = surface_[previous_in_triangle(ring.corners[i])].vertex;
-        const glm::dvec3 b = input_.point(vb);
-        const glm::dvec3 c = input_.point(vc);
-        const glm::dvec3 cross_before = glm::cross(b - before, c - before);
-        const glm::dvec3 cross_after = glm::cross(b - after, c - after);
-        const double lengths = glm::length(cross_before) * glm::length(cross_after);
-        if (!(glm::dot(cross_before, cross_after) > min_fit_cosine * lengths)) return false;
-        if (!is_near_normals(cross_after, vertex, vb, vc)) return false;
-    }
-    return true;
-}
-
-/// Returns the moves of vertices to where they fit the input best. Boundaries stay in place,
-/// because another mesh may meet them.
-std::vector<Collapser::Fit> Collapser::best_fits() {
-    Ring ring;
-    std::vector<Fit> fits;
-    for (const std::uint32_t v : alive_) {
-        if (surface_.is_removed(v) || (!input_.is_fixed.empty() && input_.is_fixed[v])) continue;
-        const bool is_small = surface_.find_ring(v, ring);
-        examined_ += ring.size;
-        if (!is_small || ring.has_border || !may_move(v, ring) || (flags_[v] & is_linked) != 0)
-            continue;
-        const glm::dvec3 offset = error_->fitted_offset(v, ring);
-        if (offset != glm::dvec3(0.0)) fits.push_back({v, offset});
-    }
-    return fits;
-}
-
-/// Shortens the moves to positions that are far from the surface of the input. The planes around a
-/// vertex can meet there, but the surface ends before: beside a step, a spike would result.
-void Collapser::shorten_far_moves(std::vector<Fit>& fits) {
-    // Convex surfaces need 1.3 distances of planes. A vertex of the input lies on its surface, so
-    // short moves are within the limit.
-    constexpr double max_distances = 1.5;
-    constexpr double rounding = 1e-6;
-    constexpr double max_deviations = 1.0;
-    std::vector<std::size_t> long_moves;
-    std::vector<Ball> balls;
-    for (std::size_t i = 0; i < fits.size(); ++i) {
-        const Fit& fit = fits[i];
-        double limit = max_distances * error_->plane_distance(fit.vertex);
-        if (deviation_) limit = std::min(limit, max_deviations * deviation_->allowed());
-        limit = std::max(limit, rounding);
-        if (!(glm::dot(fit.offset, fit.offset) > limit * limit)) continue;
-        long_moves.push_back(i);
-        balls.push_back({input_.point(fit.vertex) + fit.offset, limit});
-    }
-    std::swap(input_.positions, original_positions_);
-    const std::vector<bool> touch = touch_surface(balls, input_);
-    std::swap(input_.positions, original_positions_);
-    for (std::size_t i = 0; i < balls.size(); ++i) {
-        glm::dvec3& offset = fits[long_moves[i]].offset;
-        if (!touch[i]) offset *= balls[i].radius / glm::length(offset);
-    }
-}
-
-/// Moves the remaining vertices to where they fit best, one after another.
-void Collapser::fit_positions() {
-    std::vector<Fit> fits = best_fits();
-    shorten_far_moves(fits);
-    Ring ring;
-    for (const Fit& fit : fits) {
-        const glm::vec3 before = input_.positions[fit.vertex];
-        const glm::dvec3 point = input_.point(fit.vertex) + fit.offset;
-        const glm::vec3 after(input_.center + point / input_.scale);
-        if (after == before || !is_finite(after) || !surface_.find_ring(fit.vertex, ring)) continue;
-        if (!may_be_at(fit.vertex, ring, after)) input_.positions[fit.vertex] = before;
-    }
+/// Moves the remaining vertices to where they fit best.
+void Collapser::fit_remaining() {
+    const FittedSurface fitted{input_,  surface_,  original_positions_,
+                               *error_, *normals_, deviation_};
+    examined_ += fit_positions(fitted, alive_, [&](std::uint32_t vertex, const Ring& ring) {
+        return may_move(vertex, ring) && (flags_[vertex] & is_linked) == 0;
+    });
 }
 
 /// Continues with the planes of the present surface instead of those of the input, whose noise
@@ -822,7 +641,7 @@ void Collapser::start_anew() {
     error_->forget_planes();
     for (std::size_t t = 0; t < surface_.corners().size() / 3; ++t) {
         if (surface_[3 * t].vertex == none) continue;
-        const glm::dvec3 cross = cross_of(t);
+        const glm::dvec3 cross = cross_of(input_, surface_, t);
         const double doubled_area = glm::length(cross);
         if (doubled_area > 0.0) error_->add_triangle(t, cross / doubled_area, doubled_area);
     }
@@ -831,22 +650,6 @@ void Collapser::start_anew() {
     }
     error_->spread_errors();
     compute_all_costs_anew(is_dirty);
-}
-
-/// Returns the numbers of triangles, from many to few, at which vertices move before the end. The
-/// mean distance is 5 to 30 % smaller for it, and the time up to 40 % longer.
-std::vector<std::size_t> Collapser::fitted_counts() const {
-    std::vector<std::size_t> counts;
-    if (!input_.fits_positions || target_ == 0) return counts;
-    std::size_t before = triangles_;
-    for (const std::size_t tenths : {60U, 35U, 20U, 14U}) {
-        const std::size_t count = tenths * target_ / 10;
-        // A smaller step is not worth its time.
-        if (before < count + count / 4) continue;
-        counts.push_back(count);
-        before = count;
-    }
-    return counts;
 }
 
 /// Counts why the remaining vertices do not move.
@@ -898,14 +701,15 @@ Collapsed Collapser::run() {
     std::size_t checks = 0;
     bool was_checked = false;
     bool are_parts_relaxed = false;
-    const std::vector<std::size_t> fitted = fitted_counts();
+    std::vector<std::size_t> fitted;
+    if (input_.fits_positions && target_ > 0) fitted = fitted_counts(triangles_, target_);
     auto next_fit = fitted.begin();
     while (triangles_ > target_) {
         if (next_fit != fitted.end() && triangles_ <= *next_fit) {
             while (next_fit != fitted.end() && triangles_ <= *next_fit)
                 ++next_fit;
             is_before_fit_ = true;
-            fit_positions();
+            fit_remaining();
             start_anew();
         }
         is_before_fit_ = next_fit != fitted.end();
@@ -932,7 +736,7 @@ Collapsed Collapser::run() {
     }
     if (triangles_ > target_ && target_ > 0) result_.obstacles = obstacles();
     if (input_.fits_positions && error_) {
-        fit_positions();
+        fit_remaining();
         for (const CornerData& corner : surface_.corners()) {
             if (corner.vertex == none) continue;
             const glm::vec3& position = input_.positions[corner.vertex];
