@@ -6,11 +6,15 @@ out vec4 color;
 
 //@include <second_texcoord>
 //@include <displacement>
+//@include <relief_edge>
+//@include <relief_depth>
 //@include <alpha>
 //@include <view>
 
 void main() {
     float alpha = alpha_here();
     color = vec4(view_color(), alpha);
+    write_depth();
     cut_holes();
+    cut_silhouette();
 }

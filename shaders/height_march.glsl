@@ -26,10 +26,10 @@ vec2 texcoord_up = dFdy(texcoord_surface);
 vec3 position_right = dFdx(position_world);
 vec3 position_up = dFdy(position_world);
 
-// Returns k; z is 0 if there is no ray.
-vec3 ray_texels() {
+// Returns k for the ray of view, or of light, in a direction of any length. z is the share of the
+// direction that one texel of depth is long; 0 if there is no ray.
+vec3 ray_texels(vec3 outward_world) {
     vec3 normal = normalized_or(normal_world, vec3(0.0));
-    vec3 view = to_eye(position_world);
     vec2 right = texcoord_right * height_size();
     vec2 up = texcoord_up * height_size();
     float area = right.x * up.y - right.y * up.x;
@@ -38,20 +38,22 @@ vec3 ray_texels() {
     vec3 along_y = position_up * right.x - position_right * up.x;
     float texel = sqrt(length(cross(along_x, along_y)));
     float turned = dot(normal, cross(along_x, along_y));
-    float toward = dot(normal, view);
-    vec2 moved = vec2(dot(normal, cross(view, along_y)), dot(normal, cross(along_x, view)));
+    float toward = dot(normal, outward_world);
+    vec2 moved = vec2(dot(normal, cross(outward_world, along_y)),
+                      dot(normal, cross(along_x, outward_world)));
     vec2 k = -moved * (texel * sign(area) / turned) / toward;
-    bool is_seen = toward > 0.0 && turned != 0.0 && dot(k, k) < 1e12;
-    return is_seen ? vec3(k, 1.0) : vec3(0.0);
+    bool enters = toward > 0.0 && turned != 0.0 && dot(k, k) < 1e12;
+    return enters ? vec3(k, texel / (abs(area) * toward)) : vec3(0.0);
 }
 
-vec2 texels_of_displacement() {
-    vec3 ray = ray_texels();
-    if (ray.z == 0.0) return vec2(0.0);
-    return ray.xy * hit_depth(texcoord_surface * height_size(), ray.xy);
+vec3 view_texels = ray_texels(to_eye(position_world));
+
+float depth_at_hit() {
+    return view_texels.z > 0.0 ? hit_depth(texcoord_surface * height_size(), view_texels.xy) : 0.0;
 }
 
-vec2 texcoord_displacement = texels_of_displacement() / height_size();
+float relief_depth = depth_at_hit();
+vec2 texcoord_displacement = view_texels.xy * relief_depth / height_size();
 vec2 texcoord_displaced = texcoord_surface + texcoord_displacement;
 
 //@include <displaced_second>
@@ -179,10 +181,8 @@ float hit_depth(vec2 p, vec2 k) {
     return bisected(p, k, around);
 }
 
-//@part maximum_mipmaps implements hit_depth
-// Descent through a pyramid of maximum heights: a node that the ray passes above is skipped. At level
-// 0, the ray is intersected with the bilinear patch exactly. After height_steps steps, the point
-// reached so far stands in. Source: [Tevs et al. 2008].
+//@part walk
+// Steps of a ray from node to node and from patch to patch.
 
 //@include "height_march.glsl#nodes"
 //@include <height_columns>
@@ -216,20 +216,31 @@ ivec2 next_cell(vec2 point, vec2 k, HeightSpan x, HeightSpan y, vec2 leaves) {
 
 float texel_height(ivec2 texel) { return texelFetch(height_texture, texel, 0).r; }
 
-// Returns the depth, from `begin` on, at which the ray passes the patch's surface; no_exit if it does
-// not. With d the depth from `begin`, the distance below the relief is q.x + q.y d + q.z d d.
-float patch_depth(vec2 from, vec2 k, ivec2 cell, float begin) {
+// Returns the coefficients of the heights of a patch along k: h = x + y d + z d d after the depth d.
+vec3 heights_along(vec2 at, vec2 k, ivec2 cell) {
     ivec2 near = ivec2(height_column(cell.x), height_row(cell.y));
     ivec2 far = ivec2(height_column(cell.x + 1), height_row(cell.y + 1));
     float a = texel_height(near);
     float b = texel_height(ivec2(far.x, near.y)) - a;
     float c = texel_height(ivec2(near.x, far.y)) - a;
     float e = texel_height(far) - a - b - c;
-    vec2 at = clamp(from + k * begin - vec2(cell), 0.0, 1.0);
-    float height = a + b * at.x + c * at.y + e * at.x * at.y;
-    vec3 q = vec3(begin - height_depth * (1.0 - height),
-                  1.0 + height_depth * (b * k.x + c * k.y + e * (at.x * k.y + at.y * k.x)),
-                  height_depth * e * k.x * k.y);
+    return vec3(a + b * at.x + c * at.y + e * at.x * at.y,
+                b * k.x + c * k.y + e * (at.x * k.y + at.y * k.x), e * k.x * k.y);
+}
+
+//@part maximum_mipmaps implements hit_depth
+// Descent through a pyramid of maximum heights: a node that the ray passes above is skipped. At level
+// 0, the ray is intersected with the bilinear patch exactly. After height_steps steps, the point
+// reached so far stands in. Source: [Tevs et al. 2008].
+
+//@include "height_march.glsl#walk"
+
+// Returns the depth, from `begin` on, at which the ray passes the patch's surface; no_exit if it does
+// not. With d the depth from `begin`, the distance below the relief is q.x + q.y d + q.z d d.
+float patch_depth(vec2 from, vec2 k, ivec2 cell, float begin) {
+    vec3 along = heights_along(clamp(from + k * begin - vec2(cell), 0.0, 1.0), k, cell);
+    vec3 q = vec3(begin - height_depth * (1.0 - along.x), 1.0 + height_depth * along.y,
+                  height_depth * along.z);
     if (q.x >= 0.0) return begin;
     float square = q.y * q.y - 4.0 * q.z * q.x;
     float root = q.y + sqrt(max(square, 0.0));

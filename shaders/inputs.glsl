@@ -31,6 +31,11 @@ uniform vec4 eye_world;
 
 vec3 to_eye(vec3 position_world) { return eye_world.xyz - eye_world.w * position_world; }
 
+//@part clip
+// The projection of the camera.
+
+uniform mat4 clip_from_world;
+
 //@part diffuse_color
 // The share of light that the surface scatters.
 

@@ -51,6 +51,7 @@ vec4 light_row(int index) { return buffer_texel(light_buffer, index); }
 //@include <light_rows>
 //@include <highlight_row>
 //@include <directional_shadow>
+//@include <relief_share>
 //@include <receive>
 
 void add_directional_lights(Surface surface, inout Lighting lighting) {
@@ -58,8 +59,9 @@ void add_directional_lights(Surface surface, inout Lighting lighting) {
     for (int i = 0; i < directional_light_count; ++i) {
         int row = directional_light_rows * i;
         vec3 irradiance = light_row(row + 1).rgb;
-        float share = i == 0 ? first_share : 1.0;
-        receive(surface, light_row(row).xyz, irradiance * share,
+        vec3 light_world = light_row(row).xyz;
+        float share = relief_share(light_world, i == 0 ? first_share : 1.0);
+        receive(surface, light_world, irradiance * share,
                 highlight_power(row + 2, irradiance) * share, lighting);
     }
 }
@@ -74,6 +76,7 @@ void add_directional_lights(Surface surface, inout Lighting lighting) {}
 //@include <highlight_row>
 //@include "falloff.glsl#irradiance"
 //@include <point_shadow>
+//@include <relief_share>
 //@include <receive>
 
 void add_point_lights(Surface surface, inout Lighting lighting) {
@@ -84,8 +87,9 @@ void add_point_lights(Surface surface, inout Lighting lighting) {
         vec4 power = light_row(row + 1);
         vec3 to_light_world = place.xyz - surface.position_world;
         float reach = reach_of(to_light_world, place.w, power.w);
-        float share = i == 0 ? first_share : 1.0;
-        receive(surface, direction_to(to_light_world), irradiance_of(power.rgb, reach) * share,
+        vec3 light_world = direction_to(to_light_world);
+        float share = relief_share(light_world, i == 0 ? first_share : 1.0);
+        receive(surface, light_world, irradiance_of(power.rgb, reach) * share,
                 irradiance_of(highlight_power(row + 2, power.rgb), reach) * share, lighting);
     }
 }
@@ -102,6 +106,7 @@ void add_point_lights(Surface surface, inout Lighting lighting) {}
 //@include <highlight_row>
 //@include "falloff.glsl#irradiance"
 //@include <spot_shadow>
+//@include <relief_share>
 //@include <receive>
 
 void add_spot_lights(Surface surface, inout Lighting lighting) {
@@ -116,7 +121,7 @@ void add_spot_lights(Surface surface, inout Lighting lighting) {
         float inside = clamp(dot(-light_world, cone.xyz) + cone.w, 0.0, 1.0);
         float reach = reach_of(to_light_world, place.w, power.w);
         vec3 highlights = highlight_power(row + 3, power.rgb);
-        float share = i == 0 ? first_share : 1.0;
+        float share = relief_share(light_world, i == 0 ? first_share : 1.0);
         receive(surface, light_world, irradiance_of(power.rgb * (inside * inside), reach) * share,
                 irradiance_of(highlights * (inside * inside), reach) * share, lighting);
     }

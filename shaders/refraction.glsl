@@ -146,10 +146,10 @@ Path path_through(Surface surface, vec2 picture_size) {
 // Light is refracted where it leaves the surface to the eye, and absorbed on a path whose length is
 // the thickness. A path that begins behind the eye counts as straight. Source: KHR_materials_volume.
 
+//@include "inputs.glsl#clip"
 //@include "refraction.glsl#path"
 //@include <thickness_texture>
 
-uniform mat4 clip_from_world;
 uniform float thickness;
 uniform float object_scale;
 uniform vec3 absorption;  // The logarithm of the attenuation of a unit of length.

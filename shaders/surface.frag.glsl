@@ -7,6 +7,8 @@ invariant out vec4 color;
 //@include "light.glsl#lighting"
 //@include <second_texcoord>
 //@include <displacement>
+//@include <relief_edge>
+//@include <relief_depth>
 //@include <alpha>
 //@include <surface>
 //@include <lights>
@@ -38,5 +40,7 @@ void main() {
     vec3 reflected = with_sheen(surface, with_reflection(surface, scattered) + highlights);
     vec3 radiance = with_clearcoat(surface, reflected + emitted_radiance());
     color = vec4(coded(radiance), alpha);
+    write_depth();
     cut_holes();
+    cut_silhouette();
 }

@@ -265,6 +265,8 @@ TEST(SequenceRefusal, StatesTheReasonAndWritesNoFile) {
          {"square.obj --output out/old.png --height-map h.png --height-method parallax "
           "--height-steps 8",
           2, "--height-steps: applies to maximum mipmaps"},
+         {"square.obj --output out/old.png --height-map h.png --height-shadow maybe", 2,
+          "--height-shadow"},
          {"square.obj --output out/old.png --height-map h.png --height-depth 8 --cone-map c.png", 2,
           "--cone-map: applies to relaxed cones"},
          {"square.obj --output out/old.png --normal-space object", 2,

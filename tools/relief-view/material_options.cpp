@@ -98,7 +98,19 @@ void add_relief_options(CLI::App& app, ViewOptions& options) {
               "Set the bisections of relief mapping and relaxed cones, from 0 to 16. Default: 6.")
         .group(maps_group);
     add_field(app, fields, "--height-steps", "N", &ReliefMap::max_steps,
-              "Set the steps after which maximum mipmaps end, from 1 to 1024. Default: 128.")
+              "Set the steps after which maximum mipmaps and self-shadows end, from 1 to 1024. "
+              "Default: 128.")
+        .group(maps_group);
+    add_field(app, fields, "--height-shadow", &ReliefMap::self_shadow,
+              "Let the relief hide light from its own points. Default: off.")
+        .group(maps_group);
+    add_field(app, fields, "--height-silhouette", &ReliefMap::silhouette,
+              "Choose what is drawn where the view leaves a height map that does not repeat: its "
+              "border continues (none), or nothing (clip). Default: none.")
+        .group(maps_group);
+    add_field(app, fields, "--height-write-depth", &ReliefMap::write_depth,
+              "Write the depth of the relief, so that other surfaces meet it where it is seen. "
+              "Default: off.")
         .group(maps_group);
     add_path(app, "--cone-map", options.cone_map,
              "Read the cone map of the height map from FILE, which relaxed cones need.")

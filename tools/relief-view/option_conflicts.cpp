@@ -283,9 +283,12 @@ const Conflict conflicts[] = {
                      HeightMethod::parallax_occlusion, HeightMethod::maximum_mipmaps>,
      "applies to relief mapping and cones", "choose another --height-method, or leave it out"},
     {"--height-steps",
-     ignores_setting<&ReliefMap::max_steps, HeightMethod::parallax,
-                     HeightMethod::parallax_occlusion, HeightMethod::relief_mapping,
-                     HeightMethod::relaxed_cones>,
+     [](const Options& o) {
+         return !o.relief_fields.get(&ReliefMap::self_shadow).value_or(false) &&
+                ignores_setting<&ReliefMap::max_steps, HeightMethod::parallax,
+                                HeightMethod::parallax_occlusion, HeightMethod::relief_mapping,
+                                HeightMethod::relaxed_cones>(o);
+     },
      "applies to maximum mipmaps", "choose another --height-method, or leave it out"},
     {"--cone-map",
      [](const Options& o) {

@@ -146,4 +146,17 @@ HeightHit HeightField::first_hit(const HeightRay& ray) const {
     }
 }
 
+bool HeightField::is_shadowed(const HeightRay& ray) const {
+    // The bound is that of march().
+    constexpr double max_slant_squared = 1e12;
+    const glm::dvec2 slant = glm::dvec2(ray.direction) / ray.direction.z;
+    const bool rises = ray.direction.z < 0.0 && is_finite(ray.texcoord) &&
+                       std::isfinite(ray.black_depth) && glm::dot(slant, slant) < max_slant_squared;
+    if (!rises) return true;
+    HeightRay lifted = ray;
+    const double below_white = 1.0 - height(ray.texcoord);
+    lifted.start_depth = ray.black_depth * std::max(0.0, below_white - shadow_lift);
+    return first_hit(lifted).end == HeightRayEnd::hit;
+}
+
 }  // namespace relief

@@ -30,12 +30,16 @@ void drop_tone(Features& f) {
     f.exposure = false;
 }
 
-/// Displaced coordinates show where a texture is looked up. Only maximum mipmaps compute with the
-/// border of the map.
+/// Displaced coordinates show where a texture is looked up, in shadows, silhouettes and depth.
+/// Lights at vertices have no shadows. A relief is clipped along axes that do not repeat.
 void drop_depth_mapping(Features& f) {
+    const bool clamped = f.height_wrap_u == Wrap::clamp || f.height_wrap_v == Wrap::clamp;
+    f.self_shadow &=
+        is_displaced(f) && light_count(f) > 0 && f.interpolation != Interpolation::gouraud;
+    f.clipped_relief &= is_displaced(f) && clamped;
+    f.written_depth &= is_displaced(f);
     if (!shows_displacement(f)) f.depth_mapping = DepthMapping::none;
-    if (f.depth_mapping != DepthMapping::maximum_mipmaps)
-        f.height_wrap_u = f.height_wrap_v = Wrap::repeat;
+    if (!has_height_wraps(f)) f.height_wrap_u = f.height_wrap_v = Wrap::repeat;
 }
 
 /// The displacement of what is looked up belongs to the surface.
@@ -43,6 +47,8 @@ void keep_depth_mapping(const Features& f, Features& kept) {
     kept.depth_mapping = f.depth_mapping;
     kept.height_wrap_u = f.height_wrap_u;
     kept.height_wrap_v = f.height_wrap_v;
+    kept.clipped_relief = f.clipped_relief;
+    kept.written_depth = f.written_depth;
 }
 
 void drop_second_texcoords(Features& f) {
@@ -316,7 +322,8 @@ Features canonical(Features f) {
 }
 
 bool detail::shows_displacement(const Features& f) {
-    if (f.detail != NormalDetail::none) return true;
+    if (f.detail != NormalDetail::none || f.self_shadow || f.clipped_relief || f.written_depth)
+        return true;
     return std::any_of(slot_effects.begin(), slot_effects.end(), [&](const SlotEffect& sampling) {
         return sampling.effect != nullptr && f.*sampling.effect;
     });

@@ -23,28 +23,6 @@ using Subject = const DrawSubject&;
 using Forced = const ForcingSubject&;
 using F = Features;
 
-/// Returns an effect that is one switch.
-template <bool Features::*Member>
-Effect one_switch(const char* name, const char* hidden) {
-    return {name, [](const Features& f) { return f.*Member; },
-            [](Features& f, bool on) { f.*Member = on; }, hidden};
-}
-
-/// Returns an effect that is one value of an enumeration; switched off, its first value takes its
-/// place.
-template <auto Member, auto Value>
-Effect one_value(const char* name, const char* hidden) {
-    return {name, [](const Features& f) { return f.*Member == Value; },
-            [](Features& f, bool on) {
-                if (on) {
-                    f.*Member = Value;
-                } else if (f.*Member == Value) {
-                    f.*Member = {};
-                }
-            },
-            hidden};
-}
-
 /// Returns the effect of the lights of one kind; switched on without any, there is one.
 template <std::uint32_t Features::*Member>
 Effect lights(const char* name) {
@@ -164,16 +142,6 @@ Decision of_anisotropy(Subject s) {
                                    s.name, s.mesh.name)};
     }
     return {true, s.name + " is rougher along a direction of the tangent frame"};
-}
-
-/// A texture shows only on a mesh with texture coordinates.
-Decision of_texture(Subject s, bool has_texture) {
-    if (!has_texture) return {false, s.name + " has none"};
-    if (s.mesh.texcoords.empty()) {
-        return {false, fmt::format("{} has one, but mesh '{}' has no texture coordinates", s.name,
-                                   s.mesh.name)};
-    }
-    return {true, s.name + " has one and the mesh has texture coordinates"};
 }
 
 /// The same for the texture of a slot, which may be looked up at the second texture coordinates.
@@ -579,61 +547,6 @@ std::vector<EffectRow> color_rows() {
     };
 }
 
-// Depth mapping
-
-const char* method_label(HeightMethod method) {
-    constexpr std::array labels{"parallax mapping", "parallax occlusion mapping", "relief mapping",
-                                "relaxed cones", "maximum mipmaps"};
-    return labels.at(static_cast<std::size_t>(method));
-}
-
-constexpr DepthMapping depth_mapping_of(HeightMethod method) {
-    return static_cast<DepthMapping>(static_cast<int>(method) + 1);
-}
-static_assert(depth_mapping_of(HeightMethod::maximum_mipmaps) == DepthMapping::maximum_mipmaps);
-
-Decision of_depth_mapping(Subject s, HeightMethod method) {
-    const std::optional<ReliefMap>& map = s.material.height_map;
-    if (!map) return {false, s.name + " has no height map"};
-    if (map->method != method)
-        return {false, fmt::format("{} requests {}", s.name, method_label(map->method))};
-    const Decision texture = of_texture(s, true);
-    if (!texture.on) return texture;
-    if (map->depth == 0.0F) return {false, s.name + " has a relief without depth"};
-    if (method == HeightMethod::relaxed_cones && !map->cones)
-        return {false, s.name + " has no cone map"};
-    if (!s.relief_shift) return {true, s.name + " has a relief, seen from any distance"};
-    if (std::isinf(*s.relief_shift))
-        return {true, fmt::format("the relief of {} reaches the eye", s.name)};
-    const bool on = *s.relief_shift >= min_relief_shift;
-    return {on, fmt::format("the relief of {} moves what is seen by at most {:.2g} pixels{}",
-                            s.name, *s.relief_shift,
-                            on ? "" : fmt::format(", less than {}", min_relief_shift))};
-}
-
-/// A height map with the method of a row, which may be forced on where the bound leaves it out.
-template <HeightMethod Method>
-bool has_relief_for(Forced s) {
-    const std::optional<ReliefMap>& map = s.material.height_map;
-    return map && map->method == Method && (Method != HeightMethod::relaxed_cones || map->cones);
-}
-
-template <HeightMethod Method>
-EffectRow depth_row() {
-    return {.effect = one_value<&F::depth_mapping, depth_mapping_of(Method)>(
-                method_label(Method), "no texture shows the displacement"),
-            .decide = [](Subject s) { return of_depth_mapping(s, Method); },
-            .choice = "the relief and its method are the material's choice",
-            .neutral = has_relief_for<Method>,
-            .only_by_name = true};
-}
-
-std::vector<EffectRow> depth_rows() {
-    return {depth_row<HeightMethod::parallax>(), depth_row<HeightMethod::parallax_occlusion>(),
-            depth_row<HeightMethod::relief_mapping>(), depth_row<HeightMethod::relaxed_cones>(),
-            depth_row<HeightMethod::maximum_mipmaps>()};
-}
-
 std::vector<EffectRow> normal_rows() {
     return {
         {.effect = one_value<&F::detail, NormalDetail::normal_map>("normal map", no_normal),
@@ -893,10 +806,13 @@ Features lights_of(const Scene& scene) {
 
 }  // namespace
 
-void detail::set_height_wraps(const Material& material, Features& f) {
-    const bool counts = f.depth_mapping == DepthMapping::maximum_mipmaps && material.height_map;
-    f.height_wrap_u = counts ? material.height_map->texture.wrap_u : Wrap::repeat;
-    f.height_wrap_v = counts ? material.height_map->texture.wrap_v : Wrap::repeat;
+Decision detail::of_texture(const DrawSubject& s, bool has_texture) {
+    if (!has_texture) return {false, s.name + " has none"};
+    if (s.mesh.texcoords.empty()) {
+        return {false, fmt::format("{} has one, but mesh '{}' has no texture coordinates", s.name,
+                                   s.mesh.name)};
+    }
+    return {true, s.name + " has one and the mesh has texture coordinates"};
 }
 
 DrawSubject detail::draw_subject(const Scene& scene, const Material& material,
@@ -927,7 +843,7 @@ const std::vector<EffectRow>& detail::effect_rows() {
     static const std::vector<EffectRow> all = [] {
         std::vector<EffectRow> rows = model_rows();
         for (const auto& more : {interpolation_rows(), deformation_rows(), color_rows(),
-                                 normal_rows(), depth_rows(), lighting_rows(), picture_rows()})
+                                 normal_rows(), relief_rows(), lighting_rows(), picture_rows()})
             rows.insert(rows.end(), more.begin(), more.end());
         return rows;
     }();

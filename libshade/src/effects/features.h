@@ -174,10 +174,15 @@ void for_each_sampled(const Features& f, const Visit& visit) {
 /// Returns the bits of the textures that a material looks up at the second texture coordinates.
 std::uint32_t second_texcoords_of(const Material& material);
 
-/// True if these features look up a texture that displaced coordinates would change.
+/// True if these features show a displacement of texture coordinates.
 bool shows_displacement(const Features& f);
 
-/// Sets the wrap modes of the material's height map, which the program of maximum mipmaps has.
+/// True if the program has the wrap modes of the height map.
+inline bool has_height_wraps(const Features& f) {
+    return f.depth_mapping == DepthMapping::maximum_mipmaps || f.self_shadow || f.clipped_relief;
+}
+
+/// Sets the wrap modes of the material's height map, if the program has them.
 void set_height_wraps(const Material& material, Features& f);
 
 /// Returns the texture coordinates at which a texture is looked up.
@@ -198,6 +203,17 @@ struct Decision {
     std::string reason;
 };
 
+/// Upper bounds, in pixels, of what the relief of a draw changes; infinite if it reaches the eye.
+struct ReliefBounds {
+    double shift = 0.0;   ///< How far it displaces what the picture shows.
+    double depth = 0.0;   ///< How deep it is.
+    double shadow = 0.0;  ///< The length of its self-shadows, if the material requests them;
+                          ///< infinite if light arrives along the surface or from below it.
+};
+
+/// The least of these bounds for which an effect of the relief is planned.
+inline constexpr double min_relief_pixels = 0.5;
+
 /// The input of the decisions for one draw.
 struct DrawSubject {
     const Scene& scene;
@@ -208,22 +224,20 @@ struct DrawSubject {
     Features lights;  ///< The scene's lights: counts, falloff, ranges, highlight colors, shadow.
     const MeshPose* pose = nullptr;  ///< Null if nothing can deform the mesh.
     bool is_occluded = false;        ///< Some open share of the instance is not 1.
-    /// The bound of relief_shift(); none if the draw is seen from any camera.
-    std::optional<double> relief_shift = std::nullopt;
+    /// relief_bounds(); none if the draw is seen from any camera.
+    std::optional<ReliefBounds> relief = std::nullopt;
 };
 
-/// The least displacement on the screen, in pixels, for which depth mapping is planned.
-inline constexpr double min_relief_shift = 0.5;
-
-/// Returns an upper bound of the distance, in pixels, by which the material's relief displaces what
-/// the picture shows of some triangles; infinite if the relief reaches the eye; none if it is not
-/// known: without a camera, for a deformed mesh, or if the size of the height map cannot be read.
+/// Returns the bounds of the material's relief over some triangles; none if they are not known:
+/// without a camera, for a deformed mesh, or if the size of the height map cannot be read.
 ///
 /// A point of the relief and the point of the surface above it are at most a depth apart. On the
 /// screen they are as far apart as that distance at the nearest corner, times the sine of the
-/// steepest angle between view and normal.
-std::optional<double> relief_shift(const Scene& scene, const Instance& instance,
-                                   const MaterialRange& range, const FrameSettings& settings);
+/// steepest angle between view and normal. A shadow is as long as the depth times the tangent of
+/// the flattest angle of light.
+std::optional<ReliefBounds> relief_bounds(const Scene& scene, const Instance& instance,
+                                          const MaterialRange& range,
+                                          const FrameSettings& settings);
 
 /// \param instance  null: a mesh at rest without open shares
 /// \param shadow    shadow_term() of the scene
@@ -253,6 +267,34 @@ struct EffectRow {
     /// Forced on, the effect may change the picture, within a bound: only requests by name add it.
     bool only_by_name = false;
 };
+
+/// Returns an effect that is one switch.
+template <bool Features::*Member>
+Effect one_switch(const char* name, const char* hidden) {
+    return {name, [](const Features& f) { return f.*Member; },
+            [](Features& f, bool on) { f.*Member = on; }, hidden};
+}
+
+/// Returns an effect that is one value of an enumeration; switched off, its first value takes its
+/// place.
+template <auto Member, auto Value>
+Effect one_value(const char* name, const char* hidden) {
+    return {name, [](const Features& f) { return f.*Member == Value; },
+            [](Features& f, bool on) {
+                if (on) {
+                    f.*Member = Value;
+                } else if (f.*Member == Value) {
+                    f.*Member = {};
+                }
+            },
+            hidden};
+}
+
+/// Decides whether a texture shows, which it does only on a mesh with texture coordinates.
+Decision of_texture(const DrawSubject& subject, bool has_texture);
+
+/// The rows of a relief.
+std::vector<EffectRow> relief_rows();
 
 /// A frame-wide effect. All but the skybox follow from the draws and the settings.
 struct FrameEffect {

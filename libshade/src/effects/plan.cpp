@@ -31,9 +31,9 @@ struct DrawDecisions {
 /// \param name  the material's, for the reasons
 DrawDecisions decide(const Scene& scene, const Material& material, const std::string& name,
                      const Mesh& mesh, const Instance* instance, OutputCoding output,
-                     ShadowTerm shadow, std::optional<double> relief_shift = std::nullopt) {
+                     ShadowTerm shadow, std::optional<ReliefBounds> relief = std::nullopt) {
     DrawSubject subject = draw_subject(scene, material, name, mesh, instance, shadow);
-    subject.relief_shift = relief_shift;
+    subject.relief = relief;
     DrawDecisions decisions;
     decisions.reasons.reserve(effect_rows().size() + 1);  // And that of computed tangents.
     Features requested = subject.lights;
@@ -72,7 +72,7 @@ DrawPlan plan_draw(const Scene& scene, std::size_t instance, const MaterialRange
         range.material ? scene.materials[*range.material] : default_material();
     DrawDecisions decisions = decide(
         scene, material, material_label(scene, range.material), mesh, &scene.instances[instance],
-        settings.output, shadow, relief_shift(scene, scene.instances[instance], range, settings));
+        settings.output, shadow, relief_bounds(scene, scene.instances[instance], range, settings));
     const Features& f = decisions.features;
     const bool uses_tangents = lies_in_frame(f) && f.frame == TangentFrame::stored;
     const bool needs_tangents = uses_tangents && mesh.tangents.empty();

@@ -246,8 +246,11 @@ void choose_normal(ShaderSteps& steps, By f) {
 void choose_displacement(ShaderSteps& steps, By f) {
     const auto uses = [&](DepthMapping method) { return f.depth_mapping == method; };
     const bool mipmaps = uses(DepthMapping::maximum_mipmaps);
-    const auto columns = [&](Wrap wrap) { return mipmaps && f.height_wrap_u == wrap; };
-    const auto rows = [&](Wrap wrap) { return mipmaps && f.height_wrap_v == wrap; };
+    const bool walks = mipmaps || f.self_shadow;
+    const auto columns = [&](Wrap wrap) { return walks && f.height_wrap_u == wrap; };
+    const auto rows = [&](Wrap wrap) { return walks && f.height_wrap_v == wrap; };
+    const bool clips_u = f.clipped_relief && f.height_wrap_u == Wrap::clamp;
+    const bool clips_v = f.clipped_relief && f.height_wrap_v == Wrap::clamp;
     choose(steps, {{"inputs.glsl#position", true},
                    {"height_march.glsl#displacement", is_displaced(f)},
                    {"height_march.glsl#second", is_displaced(f) && f.second_texcoords != 0},
@@ -261,7 +264,11 @@ void choose_displacement(ShaderSteps& steps, By f) {
                    {"height_march.glsl#columns_mirrored", columns(Wrap::mirror)},
                    {"height_march.glsl#rows_repeated", rows(Wrap::repeat)},
                    {"height_march.glsl#rows_clamped", rows(Wrap::clamp)},
-                   {"height_march.glsl#rows_mirrored", rows(Wrap::mirror)}});
+                   {"height_march.glsl#rows_mirrored", rows(Wrap::mirror)},
+                   {"height_edge.glsl#clip_both", clips_u && clips_v},
+                   {"height_edge.glsl#clip_u", clips_u && !clips_v},
+                   {"height_edge.glsl#clip_v", clips_v && !clips_u},
+                   {"height_edge.glsl#written", f.written_depth}});
 }
 
 /// Chooses lights of every kind, in the stage that computes them.
@@ -279,6 +286,7 @@ void choose_lights(ShaderSteps& steps, By f, bool in_this_stage) {
             {"falloff.glsl#none", positional && f.falloff == FalloffTerm::none},
             {"falloff.glsl#mixed", positional && f.falloff == FalloffTerm::mixed},
             {"falloff.glsl#range", positional && f.light_ranges},
+            {"height_shadow.glsl#share", f.self_shadow},
             {"shadow.glsl#directional", f.shadow == ShadowTerm::directional_light},
             {"shadow.glsl#point", f.shadow == ShadowTerm::point_light},
             {"shadow.glsl#spot", f.shadow == ShadowTerm::spot_light}});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light of all sources at a point, as lights.h defines it, and the shadow of the main light.
-// KHR_lights_punctual for ranges and cones.
+// The light of all sources at a point, as lights.h defines it, the shadow of the main light, and
+// the shadows of a relief on itself. KHR_lights_punctual for ranges and cones.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -196,9 +196,14 @@ std::vector<Incoming> incoming_light(const Context& context, const Surface& at) 
         double share = 1.0;
         if (light.casts_shadow) {
             share = visible_share(context, at);
-            light.irradiance *= share;
-            light.highlight_irradiance *= share;
         }
+        if (at.relief && context.material.height_map->self_shadow) {
+            const bool shadowed = is_shadowed(*at.relief, light.light_world);
+            context.trace.decide(shadowed ? 1 : 0);
+            if (shadowed) share = 0.0;
+        }
+        light.irradiance *= share;
+        light.highlight_irradiance *= share;
         if (Recorder* const recorder = context.recorder())
             record(*recorder, scene, at, share, light);
     }

@@ -336,6 +336,20 @@ struct PreparedScene {
     std::map<float, detail::SheenAlbedos> sheen_tables;  ///< The same, if a texture multiplies it.
 };
 
+/// Where the view meets a relief, and the frame of its texels on the triangle.
+struct ReliefHit {
+    const HeightField* field = nullptr;
+    double black_depth = 0.0;          ///< In texels.
+    glm::dvec2 texcoord_surface{0.0};  ///< Of the surface above it.
+    glm::dvec2 texcoord{0.0};
+    /// How far the point is beyond that of the surface: a multiple of the vector to the eye.
+    double beyond = 0.0;
+    glm::dvec3 normal_world{0.0};   ///< Of the surface, as interpolated; unit.
+    glm::dvec3 along_x_world{0.0};  ///< The edges of a texel.
+    glm::dvec3 along_y_world{0.0};
+    double texel_world = 0.0;  ///< The square root of its area.
+};
+
 /// Interpolated attributes at a hit, and the normal: interpolated or of the plane, bent by a normal
 /// or bump map.
 struct Surface {
@@ -353,6 +367,7 @@ struct Surface {
     /// The tangent frame of an anisotropic material, as interpolated; otherwise zero.
     glm::dvec3 tangent_world{0.0};
     glm::dvec3 bitangent_world{0.0};
+    std::optional<ReliefHit> relief;  ///< Where the view meets it, if it does.
 };
 
 /// Tells whether a material shows what is behind it by transmission, on this mesh.
@@ -368,6 +383,19 @@ Surface surface_at(const PreparedScene& prepared, const Hit& hit, const Material
 /// Returns the surface at a corner of the triangle that was hit, for light computed at vertices. No
 /// map bends its normal.
 Surface surface_at_corner(const PreparedScene& prepared, const Hit& hit, int corner);
+
+// Reliefs
+
+/// Tells whether the relief hides light from the point that the view meets.
+/// \param light_world  unit, to the light
+bool is_shadowed(const ReliefHit& relief, const glm::dvec3& light_world);
+
+/// Tells whether the view leaves the material's height map where it is clamped, so that nothing is
+/// drawn.
+bool is_clipped(const Material& material, const Surface& surface);
+
+/// Sets the depth of a hit to that of its relief, if the material writes it.
+void set_relief_depth(const PreparedScene& prepared, const Material& material, Hit& hit);
 
 // Light
 
@@ -392,8 +420,9 @@ glm::dvec3 fresnel_factor(const Material& material, double n_dot_v);
 
 /// The light from a surface to the eye.
 struct Shaded {
-    TermSum radiance;    ///< Unrestricted, like the data of the scene.
-    double alpha = 1.0;  ///< As Material says, whatever the alpha mode.
+    TermSum radiance;         ///< Unrestricted, like the data of the scene.
+    double alpha = 1.0;       ///< As Material says, whatever the alpha mode.
+    bool is_clipped = false;  ///< Nothing is drawn: is_clipped().
 };
 
 Shaded shade(const PreparedScene& prepared, const Hit& hit, const Material& material, Trace& trace);

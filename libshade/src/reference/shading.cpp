@@ -723,6 +723,7 @@ Shaded shade(const PreparedScene& prepared, const Hit& hit, const Material& mate
     const glm::dvec4 texel = context.look_up(TextureSlot::base_color);
     const glm::dvec3 tint = glm::dvec3(texel) * glm::dvec3(surface.color);
     const double alpha = alpha_at(context);
+    const bool is_cut = is_clipped(material, surface);
     if (material.unlit) {
         const glm::vec3 color = material.metallic_roughness
                                     ? material.metallic_roughness->base_color
@@ -730,11 +731,11 @@ Shaded shade(const PreparedScene& prepared, const Hit& hit, const Material& mate
         return {term(context, ProbeTermKind::unlit,
                      named(material.metallic_roughness ? "base color" : "kd", glm::dvec3(color)),
                      named("tint", tint)),
-                alpha};
+                alpha, is_cut};
     }
     if (material.metallic_roughness)
-        return {metallic_roughness_radiance(context, hit, tint), alpha};
-    return {phong_radiance(context, hit, tint), alpha};
+        return {metallic_roughness_radiance(context, hit, tint), alpha, is_cut};
+    return {phong_radiance(context, hit, tint), alpha, is_cut};
 }
 
 }  // namespace relief::shade::reference

@@ -540,13 +540,18 @@ Surface attributes_at(const PreparedScene& prepared, const Hit& hit) {
 
 // Reliefs
 
-/// Returns the texels that a ray passes along both axes of a map for each texel of depth below the
-/// triangle, as shaders/height_march.glsl says; none if the ray does not enter.
-/// \param size  of the map in texels
-std::optional<glm::dvec2> texels_per_depth(const Triangle& triangle, const glm::dvec3& normal,
-                                           const glm::dvec3& view, const glm::dvec2& size) {
-    const auto& positions = triangle.instance.positions_world;
+/// Returns the relief of a triangle, with the frame of its texels; none if there is none, or if the
+/// triangle has no area in the map.
+std::optional<ReliefHit> relief_frame(const PreparedScene& prepared, const Hit& hit,
+                                      const Material& material) {
+    ReliefHit relief;
+    relief.field = prepared.relief_of(hit.instance, hit.triangle);
+    const Triangle triangle = triangle_of(prepared, hit);
     const auto& texcoords = triangle.instance.mesh->texcoords;
+    if (relief.field == nullptr || texcoords.empty()) return std::nullopt;
+    relief.black_depth = static_cast<double>(material.height_map->depth);
+    const auto& positions = triangle.instance.positions_world;
+    const glm::dvec2 size(relief.field->size());
     const glm::uvec3& corners = triangle.corners;
     const glm::dvec3 p1 = positions[corners.y] - positions[corners.x];
     const glm::dvec3 p2 = positions[corners.z] - positions[corners.x];
@@ -555,38 +560,62 @@ std::optional<glm::dvec2> texels_per_depth(const Triangle& triangle, const glm::
     const glm::dvec2 t2 =
         size * (glm::dvec2(texcoords[corners.z]) - glm::dvec2(texcoords[corners.x]));
     const double area = t1.x * t2.y - t1.y * t2.x;
-    const glm::dvec3 along_x = (p1 * t2.y - p2 * t1.y) / area;
-    const glm::dvec3 along_y = (p2 * t1.x - p1 * t2.x) / area;
-    const double texel = std::sqrt(glm::length(glm::cross(along_x, along_y)));
-    const double turned = glm::dot(normal, glm::cross(along_x, along_y));
-    const double toward = glm::dot(normal, view);
-    const glm::dvec2 moved(glm::dot(normal, glm::cross(view, along_y)),
-                           glm::dot(normal, glm::cross(along_x, view)));
-    const glm::dvec2 result = -moved * texel / (turned * toward);
-    // Not a number if the triangle has no area.
+    if (area == 0.0) return std::nullopt;
+    relief.normal_world = direction_or_zero(triangle.interpolated(triangle.instance.normals_world));
+    relief.along_x_world = (p1 * t2.y - p2 * t1.y) / area;
+    relief.along_y_world = (p2 * t1.x - p1 * t2.x) / area;
+    relief.texel_world =
+        std::sqrt(glm::length(glm::cross(relief.along_x_world, relief.along_y_world)));
+    return relief;
+}
+
+/// Returns the texels that a ray of view or light passes along both axes of a map for each texel of
+/// depth, as shaders/height_march.glsl says; none if it does not enter.
+/// \param outward_world  against the ray, of any length
+std::optional<glm::dvec2> texels_per_depth(const ReliefHit& relief,
+                                           const glm::dvec3& outward_world) {
+    const glm::dvec3& normal = relief.normal_world;
+    const double turned = glm::dot(normal, glm::cross(relief.along_x_world, relief.along_y_world));
+    const double toward = glm::dot(normal, outward_world);
+    const glm::dvec2 moved(glm::dot(normal, glm::cross(outward_world, relief.along_y_world)),
+                           glm::dot(normal, glm::cross(relief.along_x_world, outward_world)));
+    const glm::dvec2 result = -moved * relief.texel_world / (turned * toward);
     const bool enters = toward > 0.0 && glm::dot(result, result) < 1e12;
     return enters ? std::optional(result) : std::nullopt;
+}
+
+glm::dvec3 vector_to_eye(const PreparedScene& prepared, const glm::dvec3& position_world) {
+    return glm::dvec3(prepared.eye_world) - prepared.eye_world.w * position_world;
+}
+
+/// Returns where the view meets the relief under a point of the surface; none if it does not.
+std::optional<ReliefHit> relief_hit(const PreparedScene& prepared, const Hit& hit,
+                                    const Material& material, const Surface& surface) {
+    std::optional<ReliefHit> relief = relief_frame(prepared, hit, material);
+    if (!relief) return std::nullopt;
+    const glm::dvec3 view = vector_to_eye(prepared, surface.position_world);
+    const auto along = texels_per_depth(*relief, view);
+    if (!along) return std::nullopt;
+    HeightRay ray;
+    ray.texcoord = surface.texcoord;
+    ray.direction = glm::dvec3(*along, 1.0);
+    ray.black_depth = relief->black_depth;
+    const HeightHit met = relief->field->first_hit(ray);
+    relief->texcoord_surface = surface.texcoord;
+    relief->texcoord = met.texcoord;
+    relief->beyond = met.depth * relief->texel_world / glm::dot(relief->normal_world, view);
+    return relief;
 }
 
 /// Moves the texture coordinates of a surface to where the view meets its relief.
 void displace(const PreparedScene& prepared, const Hit& hit, const Material& material,
               Surface& surface) {
-    const HeightField* const relief = prepared.relief_of(hit.instance, hit.triangle);
-    if (relief == nullptr || !surface.has_texcoord) return;
-    const Triangle triangle = triangle_of(prepared, hit);
-    const glm::dvec3 view =
-        glm::dvec3(prepared.eye_world) - prepared.eye_world.w * surface.position_world;
-    const glm::dvec3 normal =
-        direction_or_zero(triangle.interpolated(triangle.instance.normals_world));
-    const auto along = texels_per_depth(triangle, normal, view, glm::dvec2(relief->size()));
-    if (!along) return;
-    HeightRay ray;
-    ray.texcoord = surface.texcoord;
-    ray.direction = glm::dvec3(*along, 1.0);
-    ray.black_depth = static_cast<double>(material.height_map->depth);
-    const glm::dvec2 moved = relief->first_hit(ray).texcoord - surface.texcoord;
+    surface.relief = relief_hit(prepared, hit, material, surface);
+    if (!surface.relief) return;
+    const glm::dvec2 moved = surface.relief->texcoord - surface.texcoord;
     surface.texcoord += moved;
     if (!surface.has_texcoord_2) return;
+    const Triangle triangle = triangle_of(prepared, hit);
     const auto edge = [&](const auto& texcoords, int corner) {
         return glm::dvec2(texcoords[triangle.corners[corner]]) -
                glm::dvec2(texcoords[triangle.corners.x]);
@@ -605,8 +634,7 @@ void face_viewer(const PreparedScene& prepared, const Hit& hit, Surface& surface
         surface.coat_normal_world = -surface.coat_normal_world;
     }
     surface.view_world =
-        unit_or(glm::dvec3(prepared.eye_world) - prepared.eye_world.w * surface.position_world,
-                surface.normal_world);
+        unit_or(vector_to_eye(prepared, surface.position_world), surface.normal_world);
 }
 
 /// Records the vectors of a surface: those of the formula, and the frame of its tangent space, for
@@ -669,6 +697,38 @@ Surface surface_at_corner(const PreparedScene& prepared, const Hit& hit, int cor
     surface.normal_world = unit_or(triangle.interpolated(triangle.instance.normals_world), z_axis);
     face_viewer(prepared, at_corner, surface);
     return surface;
+}
+
+bool is_shadowed(const ReliefHit& relief, const glm::dvec3& light_world) {
+    const auto along = texels_per_depth(relief, light_world);
+    if (!along) return true;
+    HeightRay ray;
+    ray.texcoord = relief.texcoord;
+    ray.direction = -glm::dvec3(*along, 1.0);
+    ray.black_depth = relief.black_depth;
+    return relief.field->is_shadowed(ray);
+}
+
+bool is_clipped(const Material& material, const Surface& surface) {
+    if (!surface.relief || material.height_map->silhouette == ReliefSilhouette::none) return false;
+    const auto leaves = [](double from, double to) {
+        return (to < 0.0 || to > 1.0) && from >= 0.0 && from <= 1.0;
+    };
+    const glm::dvec2& from = surface.relief->texcoord_surface;
+    const glm::dvec2& to = surface.relief->texcoord;
+    const Texture& texture = material.height_map->texture;
+    return (texture.wrap_u == Wrap::clamp && leaves(from.x, to.x)) ||
+           (texture.wrap_v == Wrap::clamp && leaves(from.y, to.y));
+}
+
+void set_relief_depth(const PreparedScene& prepared, const Material& material, Hit& hit) {
+    if (!material.height_map || !material.height_map->write_depth) return;
+    const auto relief = relief_hit(prepared, hit, material, attributes_at(prepared, hit));
+    if (!relief) return;
+    // An orthographic camera looks along a vector of any length.
+    hit.depth +=
+        relief->beyond *
+        (prepared.eye_world.w > 0.0 ? hit.depth : glm::length(glm::dvec3(prepared.eye_world)));
 }
 
 }  // namespace relief::shade::reference

@@ -63,7 +63,7 @@ bool Tracer::add(const Hit& hit, Sample& sample) const {
         return false;
     sample.layers.push_back(hit);
     Shaded shaded = shade(prepared_, hit, material, sample.trace);
-    const double alpha = coverage(material, shaded.alpha);
+    const double alpha = shaded.is_clipped ? 0.0 : coverage(material, shaded.alpha);
     sample.trace.decide(alpha > 0.0 ? 1 : 0);
     const double share = (1.0 - sample.color.a) * alpha;
     if (recorder != nullptr) recorder->end_layer(shaded.alpha, alpha, share, material.alpha_mode);
@@ -115,9 +115,20 @@ bool Tracer::is_too_close(const Hit& front, const Hit& behind) const {
     return apart < 1e-6 && !is_same_surface(front, behind);
 }
 
+/// Gives hits the depth that they write, in its order.
+void Tracer::write_depths(std::vector<Hit>& hits) const {
+    for (Hit& hit : hits)
+        set_relief_depth(prepared_, prepared_.material_of(hit.instance, hit.triangle), hit);
+    std::erase_if(hits,
+                  [&](const Hit& hit) { return hit.depth > static_cast<double>(camera().far); });
+    std::stable_sort(hits.begin(), hits.end(),
+                     [](const Hit& a, const Hit& b) { return a.depth < b.depth; });
+}
+
 Sample Tracer::traced(double x, double y, bool needs_radiance, Recorder* recorder) const {
     const glm::dvec2 view_plane = on_view_plane(x, y);
-    const std::vector<Hit> hits = visibility_.hits(view_plane.x, view_plane.y);
+    std::vector<Hit> hits = visibility_.hits(view_plane.x, view_plane.y);
+    write_depths(hits);
     Sample sample(needs_radiance, recorder);
     for (std::size_t i = 0; i < hits.size(); ++i) {
         const std::size_t layers_before = sample.layers.size();

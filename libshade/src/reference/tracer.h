@@ -94,6 +94,7 @@ class Tracer {
         return material.alpha_mode != AlphaMode::blend &&
                !is_transmissive(material, *prepared_.instances[hit.instance].mesh);
     }
+    void write_depths(std::vector<Hit>& hits) const;
     [[nodiscard]] bool is_same_surface(const Hit& a, const Hit& b) const;
     [[nodiscard]] bool is_too_close(const Hit& front, const Hit& behind) const;
     /// Begins to record a hit that may be shown.

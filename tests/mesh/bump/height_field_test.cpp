@@ -269,6 +269,79 @@ TEST(HeightFields, LetRaysLeaveUpwards) {
     EXPECT_NEAR(hit.depth, 3.0 * (12.0 - (hit.texcoord.x * 16 - 0.5)), 1e-9);
 }
 
+/// A wall that ends at x = 7, and a floor from x = 8 on, in texels between centers.
+HeightField step() {
+    return {heights_of(32, 4, [](int x, int) { return x < 8 ? 1.0 : 0.0; }), Wrap::clamp};
+}
+
+/// The shadow of a wall is as long as its height times the tangent of the angle of light.
+TEST(HeightFields, CastShadowsOfTheLengthOfATangent) {
+    constexpr double depth = 6.0;
+    for (const double tangent : {0.3, 1.0, 1.7320508, 3.0}) {
+        HeightRay ray;
+        ray.black_depth = depth;
+        ray.direction = {-tangent, 0.0, -1.0};
+        const double end = 7.0 + depth * (1.0 - HeightField::shadow_lift) * tangent;
+        for (const double beside : {-1e-6, 1e-6}) {
+            ray.texcoord = {(std::max(end, 8.0) + beside + 0.5) / 32, 0.5};
+            EXPECT_EQ(step().is_shadowed(ray), beside < 0.0 && end > 8.0) << tangent;
+        }
+        // Against the other side of the wall, all is lit.
+        ray.direction.x = tangent;
+        EXPECT_FALSE(step().is_shadowed(ray));
+    }
+}
+
+TEST(HeightFields, AreShadowedWhereADenseMarchFindsThemHigher) {
+    const HeightField field(waves(24, 16), Wrap::repeat);
+    Random random(11);
+    int shadowed = 0;
+    int decided = 0;
+    for (int i = 0; i < 2000; ++i) {
+        HeightRay ray = random_ray(random, 2.0);
+        ray.direction.z = -1.0;
+        const double start =
+            ray.black_depth * (1.0 - field.height(ray.texcoord) - HeightField::shadow_lift);
+        double lowest = infinite;
+        constexpr int steps = 4000;
+        ray.start_depth = start;
+        for (int step = 1; step < steps; ++step)
+            lowest =
+                std::min(lowest, above_surface(field, ray, start * (1.0 - 1.0 * step / steps)));
+        if (std::abs(lowest) < 1e-3) continue;
+        ++decided;
+        shadowed += lowest < 0.0 ? 1 : 0;
+        EXPECT_EQ(field.is_shadowed(ray), lowest < 0.0);
+    }
+    EXPECT_GT(decided, 1500);
+    EXPECT_GT(shadowed, 300);
+}
+
+TEST(HeightFields, AreLitFromAboveOnly) {
+    const HeightField field(rough(5, 5), Wrap::repeat);
+    const HeightField flat(image_of(1, std::vector<float>{0.25F}), Wrap::repeat);
+    const HeightField white(image_of(1, std::vector<float>{1.0F}), Wrap::repeat);
+    HeightRay ray;
+    ray.texcoord = {0.3, 0.4};
+    ray.black_depth = 4.0;
+    for (const glm::dvec3 below :
+         {glm::dvec3(1.0, 0.0, 0.0), glm::dvec3(1.0, 0.0, 1.0), glm::dvec3(0.0),
+          glm::dvec3(not_a_number, 0.0, -1.0), glm::dvec3(1e7, 0.0, -1.0)}) {
+        ray.direction = below;
+        EXPECT_TRUE(field.is_shadowed(ray));
+    }
+    ray.direction = {0.0, 0.0, -1.0};
+    EXPECT_FALSE(field.is_shadowed(ray));
+    for (const glm::dvec3 above : {glm::dvec3(0.3, 0.1, -1e-3), glm::dvec3(9e5, 0.0, -1.0)}) {
+        ray.direction = above;
+        EXPECT_FALSE(white.is_shadowed(ray));
+        EXPECT_FALSE(flat.is_shadowed(ray));
+        HeightRay shallow = ray;
+        shallow.black_depth = 0.0;
+        EXPECT_FALSE(field.is_shadowed(shallow));
+    }
+}
+
 TEST(HeightFields, CoverLongThinMaps) {
     const HeightField field(heights_of(16384, 4, [](int x, int) { return x == 16000 ? 1.0 : 0.0; }),
                             Wrap::clamp);

@@ -149,6 +149,9 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::depth_mapping, 6>("depth mapping"),
         field<&F::height_wrap_u, 3>("wrap of heights along u"),
         field<&F::height_wrap_v, 3>("wrap of heights along v"),
+        field<&F::self_shadow>("self-shadow"),
+        field<&F::clipped_relief>("clipped relief"),
+        field<&F::written_depth>("written depth"),
         field<&F::ambient>("ambient"),
         field<&F::directional_lights, 3>("directional lights"),
         field<&F::point_lights, 3>("point lights"),
@@ -270,6 +273,9 @@ void add_textures(Scene& scene, Material& m, const Features& f) {
         map.texture.wrap_v = f.height_wrap_v;
         map.depth = 0.2F;
         map.method = static_cast<HeightMethod>(static_cast<int>(f.depth_mapping) - 1);
+        map.self_shadow = f.self_shadow;
+        if (f.clipped_relief) map.silhouette = ReliefSilhouette::clip;
+        map.write_depth = f.written_depth;
         if (f.depth_mapping == DepthMapping::relaxed_cones) map.cones = data("cones", 22, 0);
         m.height_map = map;
     }

@@ -154,6 +154,14 @@ inline Change relief(HeightMethod method) {
 inline const Change maximum_mipmaps = [](Frame& f) { relief(HeightMethod::maximum_mipmaps)(f); };
 inline const Change relief_by_cones = [](Frame& f) { relief(HeightMethod::relaxed_cones)(f); };
 inline const Change no_cones = [](Frame& f) { f.material().height_map->cones.reset(); };
+inline const Change self_shadow = [](Frame& f) { f.material().height_map->self_shadow = true; };
+inline const Change clipped_relief = [](Frame& f) {
+    f.material().height_map->silhouette = ReliefSilhouette::clip;
+};
+inline const Change clamped_heights = [](Frame& f) {
+    f.material().height_map->texture.wrap_v = Wrap::clamp;
+};
+inline const Change written_depth = [](Frame& f) { f.material().height_map->write_depth = true; };
 inline const Change no_depth = [](Frame& f) { f.material().height_map->depth = 0.0F; };
 
 inline const Change second_texcoords = [](Frame& f) { f.mesh().texcoords_2.resize(4); };

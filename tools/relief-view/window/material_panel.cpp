@@ -177,6 +177,9 @@ bool edit_relief(Material& material) {
         ReliefMap& map = *material.height_map;
         changed |= choose("Relief method", map.method);
         for_each_field<ReliefMap>([&](const auto& field) { changed |= edit_field(map, field); });
+        changed |= check("Relief self-shadow", map.self_shadow);
+        changed |= choose("Relief silhouette", map.silhouette);
+        changed |= check("Write relief depth", map.write_depth);
     }
     const auto& model = material.metallic_roughness;
     const bool model_has_frame = model && (model->anisotropy > 0.0F || model->clearcoat_normal_map);

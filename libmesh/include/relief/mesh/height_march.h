@@ -89,6 +89,10 @@ class HeightField {
     /// The bound of first_hit() on patches.
     static constexpr int max_patches = 1 << 16;
 
+    /// How far above its own point on the surface is_shadowed() begins, as a share of the depth of
+    /// black: 500 times the rounding of heights, and of coordinates in texels below 8192, in float.
+    static constexpr double shadow_lift = 1.0 / 512.0;
+
     /// \param heights  one channel of 8, 16 or 32 bits
     /// \param wraps  beyond the border; Wrap::clamp continues the border texel
     /// \param report  counts heights that are not finite, which are filled as in
@@ -121,6 +125,16 @@ class HeightField {
     ///
     /// Source: [Amanatides and Woo 1987] for the order of patches.
     [[nodiscard]] HeightHit first_hit(const HeightRay& ray) const;
+
+    /// Tells whether the surface hides one of its own points from a light: self-shadowing.
+    ///
+    /// \param ray  from the point of the surface at its texture coordinates towards the light, so
+    ///         that its direction has z < 0; its start_depth is ignored
+    /// \return true if first_hit() finds a hit before the ray leaves through the surface of white.
+    ///         The ray begins `shadow_lift` times the depth of black above the point, but not above
+    ///         white. Light that does not come from above, is flatter than 1 in 10^6, or is not
+    ///         finite does not reach the point; a ray over more than `max_patches` does
+    [[nodiscard]] bool is_shadowed(const HeightRay& ray) const;
 
     /// Finds a hit by a method of shaders, with the same steps as `shaders/height_march.glsl`, but
     /// in double precision.

@@ -98,6 +98,12 @@ struct BumpMap {
     float strength = 16.0F;  ///< The height in texels of the value 1.0.
 };
 
+/// How a relief ends where the view leaves its height map.
+enum class ReliefSilhouette {
+    none,  ///< The map continues by its wrap modes.
+    clip,  ///< Nothing is drawn beyond [0,1] along axes that are clamped.
+};
+
 /// Heights that show a surface's textures displaced along the view: relief mapping. Normals come
 /// from the normal or bump map, which may be the same image. The relief lies below the surface of
 /// white and in the tangent plane of the interpolated normal.
@@ -112,6 +118,11 @@ struct ReliefMap {
     /// The cone map of two channels, which relaxed cones need. The second one is the root of the
     /// ratio of a cone's radius to its height: fractions of the map's larger side and the depth.
     std::optional<Texture> cones = std::nullopt;
+    bool self_shadow = false;  ///< The relief hides light from its own points.
+    ReliefSilhouette silhouette = ReliefSilhouette::none;
+    /// The depth buffer gets the depth of the relief, so that other surfaces meet it where it is
+    /// seen.
+    bool write_depth = false;
 };
 
 /// glTF's metallic-roughness model. In a Material it replaces Phong's ambient, diffuse, specular,
@@ -244,6 +255,9 @@ template <>
 inline constexpr auto enum_names<TangentFrame> = std::to_array<EnumName<TangentFrame>>(
     {{"stored", TangentFrame::stored}, {"derivatives", TangentFrame::derivatives}});
 template <>
+inline constexpr auto enum_names<ReliefSilhouette> = std::to_array<EnumName<ReliefSilhouette>>(
+    {{"none", ReliefSilhouette::none}, {"clip", ReliefSilhouette::clip}});
+template <>
 inline constexpr auto enum_names<NormalSpace> = std::to_array<EnumName<NormalSpace>>(
     {{"tangent", NormalSpace::tangent}, {"object", NormalSpace::object}});
 template <>
@@ -282,7 +296,10 @@ inline constexpr auto fields_of<ReliefMap> = std::tuple{
     SceneField{"layers", &ReliefMap::layers, {1, 512}, {}, "relief layers"}.on_slider({1, 128}),
     SceneField{"bisections", &ReliefMap::bisections, {0, 16}, {}, "relief bisections"},
     SceneField{"max_steps", &ReliefMap::max_steps, {1, 1024}, {}, "maximum relief steps"},
-    SceneField{"cones", &ReliefMap::cones, {}, {}, "cone map"}};
+    SceneField{"cones", &ReliefMap::cones, {}, {}, "cone map"},
+    SceneField{"self_shadow", &ReliefMap::self_shadow, {}, {}, "relief self-shadow"},
+    SceneField{"silhouette", &ReliefMap::silhouette, {}, {}, "relief silhouette"},
+    SceneField{"write_depth", &ReliefMap::write_depth, {}, {}, "relief depth buffer"}};
 
 /// Returns the description of a factor of glTF's model.
 /// \param gltf  its path in a material of glTF

@@ -111,8 +111,11 @@ struct Features {
     bool double_sided = false;  ///< Back faces have the opposite normal.
     // The displacement of texture coordinates along the view.
     DepthMapping depth_mapping = DepthMapping::none;
-    Wrap height_wrap_u = Wrap::repeat;  ///< Of the height map, for maximum mipmaps.
+    Wrap height_wrap_u = Wrap::repeat;  ///< Of the height map, where the program computes with it.
     Wrap height_wrap_v = Wrap::repeat;
+    bool self_shadow = false;     ///< The relief hides light from its own points.
+    bool clipped_relief = false;  ///< Nothing is drawn where the view leaves a map that is clamped.
+    bool written_depth = false;   ///< The depth buffer gets the depth of the relief.
     // Light.
     bool ambient = false;
     std::uint32_t directional_lights = 0;

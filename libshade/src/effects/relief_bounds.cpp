@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bound of what a relief can displace on the screen: plain geometry of triangles and camera.
+// The bounds of what a relief can change on the screen: plain geometry of triangles, camera and
+// lights.
 // Tests: tests/shade/render/depth_mapping_test.cpp.
 #include <algorithm>
 #include <array>
@@ -7,8 +8,10 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "effects/features.h"
+#include "effects/light_rows.h"
 #include "relief/mesh/report.h"
 #include "scene/scene_parts.h"
 
@@ -51,35 +54,90 @@ double sine_between(const glm::dvec3& a, const glm::dvec3& b) {
 struct Seen {
     std::array<glm::dvec3, 3> corners;
     std::array<glm::dvec3, 3> normals;  ///< Zero if they are unknown.
+
+    /// True if one normal holds for all of the triangle.
+    [[nodiscard]] bool has_one_normal() const {
+        return normals[0] != glm::dvec3(0.0) && normals[1] == normals[0] &&
+               normals[2] == normals[0];
+    }
 };
 
-/// Returns the sine of the steepest angle between view and normal on a triangle; 0 if it is seen
+/// Returns the sine of the steepest angle between view and normal on a triangle; none if it is seen
 /// from behind, where nothing is displaced. Between normals that differ, it may be larger than at
 /// the corners: then the sine is 1.
-double steepest(const Screen& screen, const Seen& seen) {
+std::optional<double> steepest(const Screen& screen, const Seen& seen) {
+    if (!seen.has_one_normal()) return 1.0;
     double sine = 0.0;
     int behind = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const glm::dvec3& normal = seen.normals.at(i);
-        if (normal == glm::dvec3(0.0) || normal != seen.normals[0]) return 1.0;
-        const glm::dvec3 view = screen.is_orthographic ? glm::dvec3(0, 0, 1) : -seen.corners.at(i);
-        if (!(glm::dot(view, normal) > 0.0)) ++behind;
-        sine = std::max(sine, sine_between(view, normal));
+    for (const glm::dvec3& corner : seen.corners) {
+        const glm::dvec3 view = screen.is_orthographic ? glm::dvec3(0, 0, 1) : -corner;
+        if (!(glm::dot(view, seen.normals[0]) > 0.0)) ++behind;
+        sine = std::max(sine, sine_between(view, seen.normals[0]));
     }
-    return behind == 3 ? 0.0 : behind > 0 ? 1.0 : sine;
+    if (behind == 3) return std::nullopt;
+    return behind > 0 ? 1.0 : sine;
 }
 
-/// Returns the bound for one triangle; infinite if the relief reaches the eye, 0 if it is not seen.
-double shift_of(const Screen& screen, const Seen& seen, double depth_world) {
-    if (screen.is_orthographic) return depth_world * screen.pixels * steepest(screen, seen);
+/// The lights that shine, homogeneous in view space: a position, or a direction to the light.
+std::vector<glm::dvec4> lights_in(const Screen& screen, const Scene& scene) {
+    std::vector<glm::dvec4> lights;
+    const auto add = [&](const glm::vec3& vector, double w) {
+        lights.push_back(screen.view_from_world * glm::dvec4(glm::dvec3(vector), w));
+    };
+    for (const DirectionalLight& light : scene.directional_lights)
+        if (shines(light)) add(-light.direction_world, 0.0);
+    for (const PointLight& light : scene.point_lights)
+        if (shines(light)) add(light.position_world, 1.0);
+    for (const SpotLight& light : scene.spot_lights)
+        if (shines(light)) add(light.point.position_world, 1.0);
+    return lights;
+}
+
+/// Returns the tangent of the flattest angle of light on a triangle, rounded up; infinite if light
+/// arrives along it or from behind, or if its normals differ. The tangent is largest at a corner.
+double flattest(const std::vector<glm::dvec4>& lights, const Seen& seen) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (!seen.has_one_normal()) return infinity;
+    double tangent = 0.0;
+    for (const glm::dvec4& light : lights) {
+        for (const glm::dvec3& corner : seen.corners) {
+            const glm::dvec3 to_light = glm::dvec3(light) - light.w * corner;
+            const double sine = sine_between(to_light, seen.normals[0]);
+            if (!(glm::dot(to_light, seen.normals[0]) > 0.0) || sine >= 1.0) return infinity;
+            tangent = std::max(tangent, sine / std::sqrt(1.0 - sine * sine));
+        }
+    }
+    return tangent;
+}
+
+/// Returns how long a depth is on the screen at the nearest corner; infinite if it reaches the eye,
+/// 0 if the triangle is not seen.
+double pixels_of(const Screen& screen, const Seen& seen, double depth_world) {
+    if (screen.is_orthographic) return depth_world * screen.pixels;
     const double nearest = -std::max({seen.corners[0].z, seen.corners[1].z, seen.corners[2].z});
     const double farthest = -std::min({seen.corners[0].z, seen.corners[1].z, seen.corners[2].z});
     if (farthest < screen.near) return 0.0;
     const double distance = std::max(nearest, screen.near) - depth_world;
     if (!(distance > 0.0)) return std::numeric_limits<double>::infinity();
+    return depth_world * screen.pixels * screen.oblique / distance;
+}
+
+/// Raises the bounds by those of one triangle.
+void include(const Screen& screen, const Seen& seen, double depth_world,
+             const std::vector<glm::dvec4>& lights, ReliefBounds& bounds) {
+    const double pixels = pixels_of(screen, seen, depth_world);
+    if (pixels == 0.0) return;
     // Behind the near plane, a view may be steeper than at any corner.
-    const double sine = nearest < screen.near ? 1.0 : steepest(screen, seen);
-    return depth_world * screen.pixels * screen.oblique * sine / distance;
+    const bool is_cut =
+        !screen.is_orthographic && std::any_of(seen.corners.begin(), seen.corners.end(),
+                                               [&](const auto& c) { return -c.z < screen.near; });
+    const std::optional<double> sine = is_cut ? 1.0 : steepest(screen, seen);
+    const bool is_near = std::isinf(pixels);
+    if (!sine && !is_near) return;
+    bounds.shift = std::max(bounds.shift, is_near ? pixels : pixels * *sine);
+    bounds.depth = std::max(bounds.depth, pixels);
+    if (lights.empty() || std::isinf(bounds.shadow)) return;
+    bounds.shadow = std::max(bounds.shadow, is_near ? pixels : pixels * flattest(lights, seen));
 }
 
 /// Returns the size of an image; none if it cannot be read.
@@ -93,8 +151,9 @@ std::optional<glm::dvec2> size_of(const ImageSource& source) {
 
 }  // namespace
 
-std::optional<double> relief_shift(const Scene& scene, const Instance& instance,
-                                   const MaterialRange& range, const FrameSettings& settings) {
+std::optional<ReliefBounds> relief_bounds(const Scene& scene, const Instance& instance,
+                                          const MaterialRange& range,
+                                          const FrameSettings& settings) {
     if (!range.material || !scene.materials[*range.material].height_map) return std::nullopt;
     const ReliefMap& map = *scene.materials[*range.material].height_map;
     const Mesh& mesh = scene.meshes[instance.mesh];
@@ -110,7 +169,9 @@ std::optional<double> relief_shift(const Scene& scene, const Instance& instance,
     const glm::dmat3 of_normals =
         glm::dmat3(screen.view_from_world) *
         (glm::dot(linear[0], cofactors[0]) < 0.0 ? -cofactors : cofactors);
-    double bound = 0.0;
+    const std::vector<glm::dvec4> lights =
+        map.self_shadow ? lights_in(screen, scene) : std::vector<glm::dvec4>{};
+    ReliefBounds bounds;
     for (std::uint32_t i = 0; i < range.triangle_count; ++i) {
         const glm::uvec3& triangle = mesh.triangles[range.first_triangle + i];
         Seen seen;
@@ -135,10 +196,10 @@ std::optional<double> relief_shift(const Scene& scene, const Instance& instance,
         if (!(area_texels > 0.0) || !(area_world > 0.0)) continue;
         const double depth_world =
             static_cast<double>(map.depth) * std::sqrt(area_world / area_texels);
-        bound = std::max(bound, shift_of(screen, seen, depth_world));
-        if (!std::isfinite(bound)) return bound;
+        include(screen, seen, depth_world, lights, bounds);
+        if (std::isinf(bounds.shift) && (lights.empty() || std::isinf(bounds.shadow))) break;
     }
-    return bound;
+    return bounds;
 }
 
 }  // namespace relief::shade::detail
