@@ -3,8 +3,8 @@
 //
 //   relief-bump-bench [SIDE [ROUNDS]]   all kernels, with a triad over memory
 //   relief-bump-bench peers [ROUNDS]    sobel3 on one thread relative to plain loops, to OpenCV if
-//   it
-//                                       is installed, and to copying memory, by instruction set
+//                                       it is installed, and to copying memory, by instruction set
+//   relief-bump-bench choice [ROUNDS]   the choice of a kernel relative to the conversion
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include <cstring>
 #include <ctime>
 #include <functional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -22,6 +23,7 @@
 #include "relief/accuracy/ground_truth.h"
 #include "relief/mesh/bump.h"
 #include "relief/mesh/execution.h"
+#include "relief/mesh/height_map.h"
 #include "relief/mesh/statistics.h"
 
 #ifdef RELIEF_HAS_OPENCV
@@ -225,7 +227,77 @@ int run_peers(std::size_t rounds) {
     return 0;
 }
 
+/// The maps whose kernels are chosen.
+std::span<const FieldRecipe> choice_fields() {
+    using enum FieldShape;
+    using enum FieldCoding;
+    static const FieldRecipe all[] = {
+        {"detailed, 8 bit", waves, 8.0, 0.3, bits8, 0.0, 3},
+        {"smooth, 8 bit", waves, 32.0, 0.3, bits8, 0.0, 1},
+        {"noise 0.1, 8 bit", waves, 32.0, 0.3, bits8, 0.1, 1},
+        {"smooth, 16 bit", waves, 32.0, 0.3, bits16, 0.0, 1},
+        {"noise 0.03, 16 bit", waves, 16.0, 0.3, bits16, 0.03, 1},
+        {"smooth, float", waves, 32.0, 0.3, float32, 0.0, 1},
+        {"terraces, float", terraces, 24.0, 1.0, float32, 0.0, 1},
+    };
+    return all;
+}
+
+/// Prints one row: the choice, and conversions to 16-bit codes in existing memory by the kernel.
+void compare_choice_with_conversion(const FieldRecipe& recipe, int side, std::size_t rounds) {
+    const BumpField field = make_bump_field(recipe, side, side);
+    BumpOptions open = field.options;
+    open.kernel.reset();
+    const BumpOptions chosen = resolve_options(field.heights, open);
+    BumpOptions exact = chosen;
+    exact.arithmetic = Arithmetic::float64;
+    Image map = make_image(side, side, 3, 16, ColorSpace::data);
+    Image exact_map = map;
+    std::vector<Contender> all{
+        {"choice", [&] { choose_kernel(field.heights, open); }},
+        {"float32", [&] { normal_map_from_height(field.heights, chosen, {}, map); }},
+        {"float64", [&] { normal_map_from_height(field.heights, exact, {}, exact_map); }}};
+    std::vector<Contender> on_two_threads{all[0], all[1]};
+    set_thread_limit(1);
+    measure_processor_time(all, rounds);
+    set_thread_limit(2);
+    measure(on_two_threads, rounds);
+    const auto median = [](const std::vector<double>& values) {
+        return time_statistics(values).median;
+    };
+    const auto ratio = [&](const Contender& a, const Contender& b) {
+        std::vector<double> ratios = a.nanoseconds;
+        for (std::size_t i = 0; i < ratios.size(); ++i)
+            ratios[i] /= b.nanoseconds[i];
+        return median(ratios);
+    };
+    fmt::print(
+        "| {0} x {0} | {1} | {2}{3} | {4:.1f} | {5:.1f} | {6:.1f} | {7:.2f} | {8:.2f} | {9:.2f} "
+        "|\n",
+        side, recipe.name, enum_name(*chosen.kernel),
+        *chosen.kernel == Kernel::gaussian ? fmt::format(" {}", chosen.gaussian_radius) : "",
+        1e-6 * median(all[0].nanoseconds), 1e-6 * median(all[1].nanoseconds),
+        1e-6 * median(all[2].nanoseconds), ratio(all[0], all[1]), ratio(all[0], all[2]),
+        ratio(on_two_threads[0], on_two_threads[1]));
+}
+
+int run_choice(std::size_t rounds) {
+    fmt::print(
+        "Milliseconds of processor time on one thread; medians of {} interleaved rounds\n\n"
+        "| texels | map | kernel | choice | float32 | float64 | choice / float32 "
+        "| choice / float64 | choice / float32, 2 threads, wall clock |\n"
+        "|---|---|---|---|---|---|---|---|---|\n",
+        rounds);
+    for (const int side : {512, 1024, 2048, 4096}) {
+        for (const FieldRecipe& recipe : choice_fields())
+            compare_choice_with_conversion(recipe, side, rounds);
+    }
+    return 0;
+}
+
 int run(int argc, char** argv) {
+    if (argc > 1 && std::string_view(argv[1]) == "choice")
+        return run_choice(argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 11);
     if (argc > 1 && std::string_view(argv[1]) == "peers")
         return run_peers(argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 31);
     const int side = argc > 1 ? std::atoi(argv[1]) : 4096;

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "bump/bump_rows.h"
+#include "bump/kernel_error_model.h"
 #include "image/height_holes.h"
 #include "image/normal_coding.h"
 #include "image/texel_loops.h"
@@ -613,9 +614,9 @@ BumpOptions resolve_options(const ImageView& height, BumpOptions options) {
     check(height, options);
     if (!options.wrap) options.wrap = detect_tiling(height).wraps();
     if (!options.kernel) {
-        const KernelChoice choice = choose_kernel(height, options);
-        options.kernel = choice.kernel;
-        options.gaussian_radius = choice.gaussian_radius;
+        const KernelPrediction best = best_kernel(height, options);
+        options.kernel = best.kernel;
+        options.gaussian_radius = best.gaussian_radius;
     }
     return options;
 }

@@ -7,10 +7,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
+#include "bump/tile_loops.h"
 #include "image/texel_loops.h"
-#include "parallel.h"
 #include "portable_math.h"
 
 namespace relief::detail {
@@ -22,87 +23,41 @@ double sample_at(const double* line, std::ptrdiff_t stride, int index, int count
     return reflected(index, count, [&](int at) { return line[at * stride]; });
 }
 
-/// Copies a line of a tile and extends it beyond both ends. Element `margin` of the result is the
-/// first element of the line.
-void read_line(const double* line, std::ptrdiff_t stride, int count, Wrap wrap, int margin,
-               std::vector<double>& padded) {
+/// Copies a row of a tile and extends it beyond both ends. Element `margin` of the result is the
+/// first element of the row.
+void read_row(const double* row, int count, Wrap wrap, int margin, std::vector<double>& padded) {
     padded.resize(static_cast<std::size_t>(count + 2 * margin));
-    for (int i = 0; i < count; ++i)
-        padded[static_cast<std::size_t>(i + margin)] = line[i * stride];
+    double* const line = padded.data() + margin;
+    std::copy_n(row, count, line);
+    double* const last = line + count - 1;
     for (int i = 1; i <= margin; ++i) {
-        padded[static_cast<std::size_t>(margin - i)] = sample_at(line, stride, -i, count, wrap);
-        padded[static_cast<std::size_t>(margin + count - 1 + i)] =
-            sample_at(line, stride, count - 1 + i, count, wrap);
-    }
-}
-
-/// Calls process_line(first index, stride, count, wrap, buffer) for all rows or for all columns.
-template <typename WithLine>
-void for_lines(const HeightTile& tile, bool rows, const WithLine& process_line) {
-    const int lines = rows ? tile.height : tile.width;
-    parallel_for(static_cast<std::size_t>(lines), 16, [&](std::size_t begin, std::size_t end) {
-        std::vector<double> padded;
-        for (std::size_t line = begin; line < end; ++line) {
-            const std::size_t first = rows ? line * static_cast<std::size_t>(tile.width) : line;
-            process_line(first, rows ? 1 : tile.width, rows ? tile.width : tile.height,
-                         rows ? tile.wrap.x : tile.wrap.y, padded);
-        }
-    });
-}
-
-/// Applies the filter along the rows.
-void filter_rows(HeightTile& tile, std::span<const double> weights, int spacing) {
-    const int margin = static_cast<int>(weights.size() - 1) * spacing;
-    for_lines(tile, true,
-              [&](std::size_t first, std::ptrdiff_t stride, int count, Wrap wrap,
-                  std::vector<double>& padded) {
-                  double* const line = tile.values.data() + first;
-                  read_line(line, stride, count, wrap, margin, padded);
-                  const double* const center = padded.data() + margin;
-                  for (int i = 0; i < count; ++i) {
-                      double sum = weights[0] * center[i];
-                      for (std::size_t k = 1; k < weights.size(); ++k) {
-                          const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(k) * spacing;
-                          sum += weights[k] * (center[i - offset] + center[i + offset]);
-                      }
-                      line[i] = sum;
-                  }
-              });
-}
-
-/// Applies the filter along the columns, one whole row at a time.
-void filter_columns(HeightTile& tile, std::span<const double> weights, int spacing) {
-    const int margin = static_cast<int>(weights.size() - 1) * spacing;
-    const auto width = static_cast<std::size_t>(tile.width);
-    const auto row_at = [&](const std::vector<double>& rows, int row) {
-        return rows.data() + static_cast<std::size_t>(row) * width;
-    };
-    std::vector<double> padded(static_cast<std::size_t>(tile.height + 2 * margin) * width);
-    for (int row = -margin; row < tile.height + margin; ++row) {
-        double* const to = padded.data() + static_cast<std::size_t>(row + margin) * width;
-        if (row >= 0 && row < tile.height) {
-            std::copy_n(row_at(tile.values, row), width, to);
-            continue;
-        }
-        for (std::size_t x = 0; x < width; ++x)
-            to[x] = sample_at(tile.values.data() + x, tile.width, row, tile.height, tile.wrap.y);
-    }
-    for (int row = 0; row < tile.height; ++row) {
-        double* const to = tile.values.data() + static_cast<std::size_t>(row) * width;
-        const double* const center = row_at(padded, row + margin);
-        for (std::size_t x = 0; x < width; ++x)
-            to[x] = weights[0] * center[x];
-        for (std::size_t k = 1; k < weights.size(); ++k) {
-            const int offset = static_cast<int>(k) * spacing;
-            const double* const above = row_at(padded, row + margin - offset);
-            const double* const below = row_at(padded, row + margin + offset);
-            for (std::size_t x = 0; x < width; ++x)
-                to[x] += weights[k] * (above[x] + below[x]);
+        if (wrap == Wrap::clamp && count > 1) {
+            // reflected(), whose reflections of elements beyond the other end are known already.
+            line[-i] = 2 * line[0] - line[i];
+            last[i] = 2 * last[0] - last[-i];
+        } else {
+            line[-i] = sample_at(row, 1, -i, count, wrap);
+            last[i] = sample_at(row, 1, count - 1 + i, count, wrap);
         }
     }
 }
 
-constexpr int max_radius = 6;  ///< Half the maximum order of the slopes.
+/// Fills a row beyond the border of a tile from the rows inside, which are contiguous.
+void extend_row(const double* rows, int row, int height, int width, Wrap wrap, double* to) {
+    const int edge = row < 0 ? 0 : height - 1;
+    const int inner = 2 * edge - row;
+    if (wrap == Wrap::clamp && inner >= 0 && inner < height) {
+        const double* const border = rows + static_cast<std::ptrdiff_t>(edge) * width;
+        const double* const inside = rows + static_cast<std::ptrdiff_t>(inner) * width;
+        for (int x = 0; x < width; ++x)
+            to[x] = 2 * border[x] - inside[x];
+        return;
+    }
+    for (int x = 0; x < width; ++x)
+        to[x] = sample_at(rows + x, width, row, height, wrap);
+}
+
+constexpr int max_radius = max_slope_radius;
 
 /// Returns the weights of h[k] - h[-k] in central differences of order 2 m, as [m][k].
 std::array<std::array<double, max_radius + 1>, max_radius + 1> central_weights() {
@@ -116,20 +71,6 @@ std::array<std::array<double, max_radius + 1>, max_radius + 1> central_weights()
         }
     }
     return weights;
-}
-
-/// Returns true if the difference of line[0] and line[1] is at least `min_height` and more than
-/// `times` times as large as all differences near it.
-bool is_step_edge(const double* line, double min_height, double times) {
-    constexpr int near = 4;
-    const double step = std::abs(line[1] - line[0]);
-    if (step < min_height || step == 0.0) return false;
-    double max_difference = 0.0;
-    for (int k = 1; k <= near; ++k) {
-        max_difference = std::max(
-            {max_difference, std::abs(line[k + 1] - line[k]), std::abs(line[1 - k] - line[-k])});
-    }
-    return step > times * max_difference;
 }
 
 /// Computes the slope at line[0] from at most `left` and `right` texels on both sides: a central
@@ -165,15 +106,6 @@ Neighbors neighbors_at(const HeightTile& tile, int x, int y) {
     return result;
 }
 
-/// Returns the median of the four heights of a texel above the lines between opposite neighbors.
-double height_above_neighbors(const Neighbors& neighbors, double value) {
-    std::array<double, 4> above{};
-    for (std::size_t i = 0; i < 4; ++i)
-        above[i] = value - 0.5 * (neighbors[i] + neighbors[i + 4]);
-    std::sort(above.begin(), above.end());
-    return 0.5 * (above[1] + above[2]);
-}
-
 /// Performs one pass of remove_outliers().
 std::vector<double> remove_isolated_outliers(HeightTile& tile, double min_height) {
     // Neither Gaussian noise nor detail that a kernel can resolve exceeds this limit.
@@ -184,19 +116,24 @@ std::vector<double> remove_isolated_outliers(HeightTile& tile, double min_height
     HeightTile heights_above{tile.width, tile.height, tile.wrap,
                              std::vector<double>(tile.values.size(), 0.0)};
     std::vector<double>& above = heights_above.values;
+    const VectorTarget target = best_vector_target();
     std::vector<double> magnitudes;
-    for (int y = 1; y + 1 < tile.height; ++y) {
-        for (int x = 1; x + 1 < tile.width; ++x) {
-            const auto texel = static_cast<std::size_t>(y * tile.width + x);
-            above[texel] = height_above_neighbors(neighbors_at(tile, x, y), tile.values[texel]);
-            magnitudes.push_back(std::abs(above[texel]));
-        }
+    for (int y = 1; y + 1 < tile.height && tile.width > 2; ++y) {
+        const auto first = static_cast<std::size_t>(y * tile.width + 1);
+        const auto count = static_cast<std::size_t>(tile.width - 2);
+        const double* const here = tile.values.data() + first;
+        heights_above_neighbors(target, here - tile.width, here, here + tile.width, count,
+                                above.data() + first);
+        for (std::size_t i = first; i < first + count; ++i)
+            magnitudes.push_back(std::abs(above[i]));
     }
     if (magnitudes.empty()) return {};
-    const auto center = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
-    std::nth_element(magnitudes.begin(), center, magnitudes.end());
+    const double median = smallest_of(magnitudes, magnitudes.size() / 2);
     // The median absolute value of a Gaussian is 0.6745 standard deviations.
-    const double limit = std::max(min_height, max_deviations * *center / 0.6745);
+    const double limit = std::max(min_height, max_deviations * median / 0.6745);
+    if (std::none_of(above.begin(), above.end(),
+                     [limit](double height) { return std::abs(height) > limit; }))
+        return {};
     const HeightTile before = tile;
     std::vector<double> heights;
     for (int y = 1; y + 1 < tile.height; ++y) {
@@ -223,84 +160,180 @@ std::vector<double> remove_isolated_outliers(HeightTile& tile, double min_height
     return heights;
 }
 
-/// Estimates the standard deviation of white noise with the high-pass mask (1 -2 1)^`times`.
-double noise_deviation(std::span<const HeightTile> tiles, int times) {
-    std::vector<double> all;
-    for (const HeightTile& tile : tiles) {
-        const std::vector<double> high = high_pass(tile, times);
-        all.insert(all.end(), high.begin(), high.end());
-    }
-    return deviation_from_quantile(all);
+/// Applies the high-pass mask (1 -2 1) once along both axes. The result is smaller by a texel along
+/// the border.
+HeightTile second_differences(const HeightTile& tile) {
+    HeightTile result{std::max(0, tile.width - 2), std::max(0, tile.height - 2), tile.wrap, {}};
+    if (result.width == 0 || result.height == 0) return {};
+    const VectorTarget target = best_vector_target();
+    const auto width = static_cast<std::size_t>(result.width);
+    const auto height = static_cast<std::size_t>(result.height);
+    std::vector<double> along_rows(width * (height + 2));
+    for (std::size_t y = 0; y < height + 2; ++y)
+        second_difference(target, tile.values.data() + y * (width + 2), 1, width,
+                          along_rows.data() + y * width);
+    result.values.resize(width * height);
+    second_difference(target, along_rows.data(), result.width, width * height,
+                      result.values.data());
+    return result;
+}
+
+/// Appends the absolute values, divided by the gain for white noise.
+void append_magnitudes(const HeightTile& differences, int times, std::vector<double>& magnitudes) {
+    // The squares of the binomial coefficients of 2 n add up to C(4 n, 2 n).
+    const double gain = times == 2 ? 70.0 : 924.0;
+    for (const double value : differences.values)
+        magnitudes.push_back(std::abs(value) / gain);
 }
 
 }  // namespace
 
 std::vector<double> high_pass(const HeightTile& tile, int times) {
-    static constexpr std::array second_difference = {-2.0, 1.0};
     HeightTile high = tile;
     for (int i = 0; i < times; ++i)
-        high = filtered(high, second_difference);
-    // The squares of the binomial coefficients of 2 n add up to C(4 n, 2 n).
-    const double gain = times == 2 ? 70.0 : 924.0;
-    // At the border the mask reads the extension of the tile, which contains no noise.
-    std::vector<double> inside;
-    for (int y = times; y < tile.height - times; ++y) {
-        for (int x = times; x < tile.width - times; ++x)
-            inside.push_back(std::abs(high.values[static_cast<std::size_t>(y * tile.width + x)]) /
-                             gain);
-    }
-    return inside;
+        high = second_differences(high);
+    std::vector<double> magnitudes;
+    append_magnitudes(high, times, magnitudes);
+    return magnitudes;
 }
 
-double deviation_from_quantile(std::vector<double>& magnitudes) {
+double smallest_of(std::span<const double> magnitudes, std::size_t rank) {
+    // Numbers are compared in several lanes, which need not wait for each other.
+    constexpr std::size_t lanes = 8;
+    std::array<double, lanes> greatest{};
+    for (std::size_t i = 0; i + lanes <= magnitudes.size(); i += lanes) {
+        for (std::size_t lane = 0; lane < lanes; ++lane)
+            greatest[lane] = std::max(greatest[lane], magnitudes[i + lane]);
+    }
+    for (std::size_t i = magnitudes.size() / lanes * lanes; i < magnitudes.size(); ++i)
+        greatest[0] = std::max(greatest[0], magnitudes[i]);
+    // Classes of 1/16 octave below the largest number. Only that of the result is sorted.
+    constexpr int shift = 48;
+    constexpr std::uint64_t classes = 1024;
+    const auto class_of = [](double value) { return std::bit_cast<std::uint64_t>(value) >> shift; };
+    const std::uint64_t top = class_of(*std::max_element(greatest.begin(), greatest.end()));
+    std::array<std::uint32_t, classes> counts{};
+    const auto place_of = [&](double value) {
+        return std::min<std::uint64_t>(top - class_of(value), classes - 1);
+    };
+    for (const double value : magnitudes)
+        ++counts[place_of(value)];
+    std::size_t below = magnitudes.size();
+    std::size_t place = 0;
+    while (below - counts[place] > rank)
+        below -= counts[place++];
+    below -= counts[place];
+    std::vector<double> near;
+    near.reserve(counts[place]);
+    for (const double value : magnitudes) {
+        if (place_of(value) == place) near.push_back(value);
+    }
+    const auto result = near.begin() + static_cast<std::ptrdiff_t>(rank - below);
+    std::nth_element(near.begin(), result, near.end());
+    return *result;
+}
+
+double deviation_from_quantile(std::span<const double> magnitudes) {
     if (magnitudes.empty()) return 0.0;
     // 20% of a Gaussian lies within 0.2533 standard deviations.
-    const auto fifth = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 5);
-    std::nth_element(magnitudes.begin(), fifth, magnitudes.end());
-    return *fifth / 0.2533;
+    return smallest_of(magnitudes, magnitudes.size() / 5) / 0.2533;
 }
 
 HeightTile filtered(const HeightTile& tile, std::span<const double> weights, int spacing) {
-    HeightTile result = tile;
-    filter_rows(result, weights, spacing);
-    filter_columns(result, weights, spacing);
+    const VectorTarget target = best_vector_target();
+    const int margin = static_cast<int>(weights.size() - 1) * spacing;
+    const auto width = static_cast<std::size_t>(tile.width);
+    // The filtered rows, with rows beyond the border on both sides.
+    std::vector<double> padded(static_cast<std::size_t>(tile.height + 2 * margin) * width);
+    double* const rows = padded.data() + static_cast<std::size_t>(margin) * width;
+    std::vector<double> line;
+    for (int y = 0; y < tile.height; ++y) {
+        const std::size_t first = static_cast<std::size_t>(y) * width;
+        read_row(tile.values.data() + first, tile.width, tile.wrap.x, margin, line);
+        symmetric_filter(target, line.data() + margin, weights, spacing, width, rows + first);
+    }
+    for (int i = 1; i <= margin; ++i) {
+        double* const above = rows - static_cast<std::ptrdiff_t>(i) * tile.width;
+        extend_row(rows, -i, tile.height, tile.width, tile.wrap.y, above);
+        double* const below = rows + static_cast<std::ptrdiff_t>(tile.height - 1 + i) * tile.width;
+        extend_row(rows, tile.height - 1 + i, tile.height, tile.width, tile.wrap.y, below);
+    }
+    HeightTile result{tile.width, tile.height, tile.wrap, std::vector<double>(tile.values.size())};
+    symmetric_filter(target, rows, weights, static_cast<std::ptrdiff_t>(spacing) * tile.width,
+                     result.values.size(), result.values.data());
     return result;
 }
+
+namespace {
+
+/// Computes the slopes along the rows of heights.
+///
+/// \param beside  gets 1 beside a step edge
+void slopes_of_rows(const HeightTile& tile, double min_edge, double times, double* slopes,
+                    unsigned char* beside) {
+    static const auto weights = central_weights();
+    const VectorTarget target = best_vector_target();
+    constexpr int margin = max_radius + 6;
+    const auto width = static_cast<std::size_t>(tile.width);
+    std::vector<double> padded;
+    std::vector<std::int64_t> edges(width + 2 * max_radius);
+    for (int y = 0; y < tile.height; ++y) {
+        const std::size_t first = static_cast<std::size_t>(y) * width;
+        read_row(tile.values.data() + first, tile.width, tile.wrap.x, margin, padded);
+        const double* const line = padded.data() + margin;
+        central_slopes(target, line, weights[max_radius].data(), width, slopes + first);
+        if (!find_step_edges(target, line - max_radius, edges.size(), min_edge, times,
+                             edges.data()))
+            continue;
+        const auto is_edge = [&](int at) {
+            return edges[static_cast<std::size_t>(at + max_radius)] != 0;
+        };
+        for (int x = 0; x < tile.width; ++x) {
+            int left = 0;
+            int right = 0;
+            while (right < max_radius && !is_edge(x + right))
+                ++right;
+            while (left < max_radius && !is_edge(x - 1 - left))
+                ++left;
+            const std::size_t texel = first + static_cast<std::size_t>(x);
+            if (std::min(left, right) < max_radius) slopes[texel] = slope_at(line + x, left, right);
+            if (std::min(left, right) == 0) beside[texel] = 1;
+        }
+    }
+}
+
+/// Exchanges rows and columns.
+template <typename T>
+std::vector<T> transposed(const std::vector<T>& values, int width, int height) {
+    std::vector<T> result(values.size());
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x)
+            result[static_cast<std::size_t>(x * height + y)] =
+                values[static_cast<std::size_t>(y * width + x)];
+    }
+    return result;
+}
+
+}  // namespace
 
 TileSlopes reference_slopes(const HeightTile& tile, double min_edge, bool has_exact_levels) {
     // Between exact levels, every difference is a step edge, however close the next one is.
     const double times = has_exact_levels ? 0.0 : 4.0;
     TileSlopes result;
-    result.slopes.resize(tile.values.size());
-    std::vector<unsigned char>& beside = result.beside_edge;
-    beside.resize(tile.values.size(), 0);
-    for (const bool rows : {true, false}) {
-        for_lines(tile, rows,
-                  [&](std::size_t first, std::ptrdiff_t stride, int count, Wrap wrap,
-                      std::vector<double>& padded) {
-                      constexpr int margin = max_radius + 6;
-                      read_line(tile.values.data() + first, stride, count, wrap, margin, padded);
-                      const double* const line = padded.data() + margin;
-                      std::vector<unsigned char> edges(padded.size(), 0);
-                      for (int i = -max_radius; i < count + max_radius; ++i)
-                          edges[static_cast<std::size_t>(i + margin)] =
-                              is_step_edge(line + i, min_edge, times) ? 1 : 0;
-                      for (int i = 0; i < count; ++i) {
-                          int left = 0;
-                          int right = 0;
-                          const auto is_edge = [&](int at) {
-                              return edges[static_cast<std::size_t>(at + margin)] != 0;
-                          };
-                          while (right < max_radius && !is_edge(i + right))
-                              ++right;
-                          while (left < max_radius && !is_edge(i - 1 - left))
-                              ++left;
-                          const auto texel = first + static_cast<std::size_t>(i * stride);
-                          result.slopes[texel][rows ? 0 : 1] = slope_at(line + i, left, right);
-                          if (std::min(left, right) == 0) beside[texel] = 1;
-                      }
-                  });
-    }
+    result.right.resize(tile.values.size());
+    result.beside_edge.resize(tile.values.size(), 0);
+    slopes_of_rows(tile, min_edge, times, result.right.data(), result.beside_edge.data());
+    const HeightTile columns{tile.height,
+                             tile.width,
+                             {tile.wrap.y, tile.wrap.x},
+                             transposed(tile.values, tile.width, tile.height)};
+    std::vector<double> down(tile.values.size());
+    std::vector<unsigned char> beside(tile.values.size(), 0);
+    slopes_of_rows(columns, min_edge, times, down.data(), beside.data());
+    result.down = transposed(down, tile.height, tile.width);
+    beside = transposed(beside, tile.height, tile.width);
+    for (std::size_t i = 0; i < beside.size(); ++i)
+        result.beside_edge[i] |= beside[i];
     return result;
 }
 
@@ -351,8 +384,15 @@ OctaveDeviations octave_deviations(std::span<const HeightTile> tiles) {
 }
 
 HighPassNoise high_pass_noise(std::span<const HeightTile> tiles) {
-    const double second_order = noise_deviation(tiles, 2);
-    const double third_order = noise_deviation(tiles, 3);
+    std::vector<double> second;
+    std::vector<double> third;
+    for (const HeightTile& tile : tiles) {
+        const HeightTile twice = second_differences(second_differences(tile));
+        append_magnitudes(twice, 2, second);
+        append_magnitudes(second_differences(twice), 3, third);
+    }
+    const double second_order = deviation_from_quantile(second);
+    const double third_order = deviation_from_quantile(third);
     return {std::min(second_order, third_order), third_order <= 1.1 * second_order};
 }
 

@@ -35,7 +35,8 @@ HeightTile filtered(const HeightTile& tile, std::span<const double> weights, int
 
 /// The derivatives of a tile.
 struct TileSlopes {
-    std::vector<glm::dvec2> slopes;          ///< Per texel, x to the right and y down.
+    std::vector<double> right;               ///< Per texel.
+    std::vector<double> down;                ///< Per texel.
     std::vector<unsigned char> beside_edge;  ///< 1 if a step edge separates a neighbor.
 };
 
@@ -82,11 +83,12 @@ OctaveDeviations octave_deviations(std::span<const HeightTile> tiles);
 ///         white noise is 1
 std::vector<double> high_pass(const HeightTile& tile, int times);
 
+/// Returns the element of this rank, from 0 in ascending order. \param magnitudes  not negative
+double smallest_of(std::span<const double> magnitudes, std::size_t rank);
+
 /// Estimates the standard deviation of Gaussian noise from the 20% quantile of its absolute values.
 /// Detail in up to 80% of the texels hardly changes the result.
-///
-/// \param magnitudes  are reordered
-double deviation_from_quantile(std::vector<double>& magnitudes);
+double deviation_from_quantile(std::span<const double> magnitudes);
 
 /// The standard deviations of independent offsets of whole rows and whole columns, as line scanners
 /// have. 0 if there are none.
@@ -213,8 +215,8 @@ class PowerSpectrum {
     [[nodiscard]] std::vector<double> gains(const NoiseSpectrum& noise) const;
     /// Returns the bin of a frequency in radians per texel, from -pi to pi.
     [[nodiscard]] std::size_t bin_at(double x, double y) const;
-    /// Multiplies the Fourier coefficients of a square of twice the side of the tiles by gains().
-    void multiply(std::vector<std::complex<double>>& square, std::span<const double> gains) const;
+    /// Returns gains() for each Fourier coefficient of the extended squares of remove_noise().
+    [[nodiscard]] std::vector<double> gains_of_extension(std::span<const double> gains) const;
 
     /// Returns the ratio of the mean power significantly above the noise to the mean power of the
     /// noise.
@@ -273,19 +275,18 @@ class PowerSpectrum {
         double power = 0.0;
     };
     [[nodiscard]] std::vector<Band> bands() const;
+    /// Returns the bins of the Fourier coefficients of a square.
+    [[nodiscard]] std::vector<std::uint32_t> bins_of(int side) const;
 
     int side_;
     std::vector<Bin> bins_;
     std::vector<std::uint32_t> bins_of_coefficients_;  ///< Of a square of `side_`.
-    std::vector<std::uint32_t> bins_of_double_side_;   ///< Of a square of twice the side.
 };
 
 /// Removes noise from one or two tiles by spectral subtraction. The result is inaccurate in some
 /// texels along the borders, where the tiles are extended by reflection.
 ///
-/// \param spectrum  of all tiles of the map
-/// \param gains  spectrum.gains() for the noise
-void remove_noise(std::span<HeightTile> tiles, const PowerSpectrum& spectrum,
-                  std::span<const double> gains);
+/// \param gains  PowerSpectrum::gains_of_extension() for all tiles of the map and the noise
+void remove_noise(std::span<HeightTile> tiles, std::span<const double> gains);
 
 }  // namespace relief::detail

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "bump/kernel_error_model.h"
+#include "relief/mesh/execution.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"
 
@@ -199,9 +200,9 @@ std::vector<Image> centers_of(std::span<const Image> parts) {
 }
 
 /// Returns true if the best kernel is a Gaussian that centers_of() do not contain often enough.
-bool is_wide(const KernelChoice& choice) {
+bool is_wide(const KernelPrediction& prediction) {
     constexpr int max_radius = 6;
-    return choice.kernel == Kernel::gaussian && choice.gaussian_radius > max_radius;
+    return prediction.kernel == Kernel::gaussian && prediction.gaussian_radius > max_radius;
 }
 
 /// Moves the upper end of the expected RMS error, and those of the other statistics by the same
@@ -233,27 +234,73 @@ double uncertainty_of(const KernelErrorModel& model) {
     return is_coarse ? of_coarse_steps : 1.0;
 }
 
-/// \param blurred  widely_blurred_noise() of the map
-KernelChoice choice_on(std::span<const Image> parts, const HeightCoding& coding,
-                       const std::optional<NoiseSpectrum>& blurred, const BumpOptions& options,
-                       bool destaircased, Grain grain) {
-    const KernelErrorModel model(parts, coding, options, destaircased, grain);
+/// The best kernel, and the model that predicts its error.
+struct BestKernel {
+    KernelErrorModel model;
+    std::vector<KernelPrediction> predictions;  ///< From fast to slow.
+    KernelPrediction prediction;
+    unsigned max_threads = 0;  ///< 0: no limit.
+};
+
+/// The questions to the model of a map.
+struct ChoiceRequest {
+    BumpOptions options;
+    bool destaircased = false;
+    Grain grain = Grain::automatic;
+};
+
+BestKernel best_on(std::span<const Image> parts, const HeightCoding& coding,
+                   const ChoiceRequest& request) {
+    KernelErrorModel model(parts, coding, request.options, request.destaircased, request.grain);
+    std::vector<KernelPrediction> predictions = all_predictions(model);
+    const KernelPrediction best = select_best(predictions);
+    return {std::move(model), std::move(predictions), best};
+}
+
+BestKernel best_of_map(std::span<const Image> parts, const HeightCoding& coding,
+                       const ChoiceRequest& request) {
+    // The centers of many parts suffice, except for kernels that are wide compared with them.
+    const std::vector<Image> sample = every_other(parts);
+    const std::vector<Image> centers = centers_of(sample);
+    if (!centers.empty()) {
+        // Loops over so few texels end before other threads have begun.
+        const ExecutionScope one_thread({1, nullptr});
+        BestKernel best = best_on(centers, coding, request);
+        best.max_threads = 1;
+        if (!is_wide(best.prediction)) return best;
+    }
+    return best_on(sample, coding, request);
+}
+
+/// Describes the best kernel, without the range of its error.
+KernelChoice choice_of(const BestKernel& best, const BumpOptions& options) {
+    const KernelErrorModel& model = best.model;
     KernelChoice choice;
     choice.depth = model.coding().depth;
     choice.noise = model.noise();
     choice.walls = model.edge_share();
     choice.grain = model.grain();
     choice.spikes = model.outlier_share();
-    choice.predictions = all_predictions(model);
-    const KernelPrediction best = select_best(choice.predictions);
+    choice.predictions = best.predictions;
     std::stable_sort(choice.predictions.begin(), choice.predictions.end(), has_less_error);
-    choice.kernel = best.kernel;
-    choice.gaussian_radius = best.gaussian_radius;
-    choice.rms_degrees = best.rms_degrees;
-    choice.max_degrees = best.max_degrees;
-    choice.mean_degrees = best.mean_degrees;
-    choice.p99_degrees = best.p99_degrees;
-    choice.reason = reason_text(model, options, best);
+    choice.kernel = best.prediction.kernel;
+    choice.gaussian_radius = best.prediction.gaussian_radius;
+    choice.rms_degrees = best.prediction.rms_degrees;
+    choice.max_degrees = best.prediction.max_degrees;
+    choice.mean_degrees = best.prediction.mean_degrees;
+    choice.p99_degrees = best.prediction.p99_degrees;
+    choice.reason = reason_text(model, options, best.prediction);
+    return choice;
+}
+
+/// Adds the upper ends of the expected error, and its other readings.
+///
+/// \param blurred  widely_blurred_noise() of the map
+void add_range(KernelChoice& choice, const BestKernel& chosen,
+               const std::optional<NoiseSpectrum>& blurred, Grain grain) {
+    const ExecutionScope scope({chosen.max_threads, nullptr});
+    const KernelErrorModel& model = chosen.model;
+    const KernelPrediction& best = chosen.prediction;
     const KernelPrediction upper = model.predict_upper(best);
     choice.upper_rms_degrees = std::max(best.rms_degrees, upper.rms_degrees);
     choice.upper_max_degrees = std::max(best.max_degrees, upper.max_degrees);
@@ -285,7 +332,6 @@ KernelChoice choice_on(std::span<const Image> parts, const HeightCoding& coding,
                                             std::numbers::sqrt2 / 2.0 * same_kernel.rms_degrees));
         }
     }
-    return choice;
 }
 
 /// Formats both ends of a range, or the lower one if they hardly differ.
@@ -379,15 +425,9 @@ KernelChoice choose_kernel(std::span<const Image> parts, const BumpOptions& opti
                            bool destaircased, Grain grain) {
     check_parts(parts);
     const HeightCoding coding = coding_of(parts);
-    const std::optional<NoiseSpectrum> blurred = blurred_noise_of(parts, coding);
-    KernelChoice choice;
-    // The centers of many parts suffice, except for kernels that are wide compared with them.
-    const std::vector<Image> sample = every_other(parts);
-    const std::vector<Image> centers = centers_of(sample);
-    if (!centers.empty())
-        choice = choice_on(centers, coding, blurred, options, destaircased, grain);
-    if (centers.empty() || is_wide(choice))
-        choice = choice_on(sample, coding, blurred, options, destaircased, grain);
+    const BestKernel best = best_of_map(parts, coding, {options, destaircased, grain});
+    KernelChoice choice = choice_of(best, options);
+    add_range(choice, best, blurred_noise_of(parts, coding), grain);
     std::size_t texels = 0;
     for (const Image& part : parts)
         texels += part.sample_count();
@@ -402,13 +442,27 @@ KernelChoice choose_kernel(std::span<const Image> parts, const BumpOptions& opti
     return choice;
 }
 
-KernelChoice choose_kernel(const ImageView& height, const BumpOptions& options, bool destaircased,
-                           Grain grain) {
+namespace {
+
+std::vector<Image> parts_of(const ImageView& height) {
     if (height.empty()) throw InvalidInput("the height field is empty");
     std::vector<Image> parts;
     for (const ImagePart& part : parts_to_analyze(height.width, height.height))
         parts.push_back(part_of(height, part));
-    return choose_kernel(parts, options, destaircased, grain);
+    return parts;
+}
+
+}  // namespace
+
+KernelChoice choose_kernel(const ImageView& height, const BumpOptions& options, bool destaircased,
+                           Grain grain) {
+    return choose_kernel(parts_of(height), options, destaircased, grain);
+}
+
+KernelPrediction detail::best_kernel(const ImageView& height, const BumpOptions& options) {
+    const std::vector<Image> parts = parts_of(height);
+    check_parts(parts);
+    return best_of_map(parts, coding_of(parts), {options}).prediction;
 }
 
 }  // namespace relief

@@ -9,7 +9,10 @@
 #include <cstdint>
 #include <functional>
 #include <numbers>
+#include <numeric>
 
+#include "bump/bump_rows.h"
+#include "bump/tile_loops.h"
 #include "image/height_holes.h"
 #include "parallel.h"
 #include "relief/mesh/report.h"
@@ -173,24 +176,31 @@ double mean_deviation(const NoiseByHeight& noise, std::span<const HeightTile> ti
     return std::sqrt(squares / count);
 }
 
-/// Statistics of squared angles in radians.
-class SquaredAngles {
+/// Statistics of angles in radians.
+class AngleStatistics {
   public:
-    void add(double square) {
-        sum_ += square;
-        sum_of_angles_ += std::sqrt(square);
-        max_ = std::max(max_, square);
-        count_ += 1.0;
-        if (bins_.empty()) bins_.resize(bin_count, 0);
-        ++bins_[bin_of(square)];
+    AngleStatistics() : bins_(bin_count, 0) {}
+
+    /// Adds the angles at which a weight is positive.
+    void add(std::span<const double> angles, std::span<const double> squares,
+             const double* weights) {
+        // The lanes of the sums need not wait for each other.
+        for (std::size_t i = 0; i < angles.size(); ++i) {
+            if (!(weights[i] > 0.0)) continue;
+            const std::size_t lane = i % lanes;
+            sums_[lane] += squares[i];
+            sums_of_angles_[lane] += angles[i];
+            max_[lane] = std::max(max_[lane], squares[i]);
+            ++bins_[bin_of(squares[i])];
+        }
     }
 
-    void add(const SquaredAngles& other) {
-        sum_ += other.sum_;
-        sum_of_angles_ += other.sum_of_angles_;
-        max_ = std::max(max_, other.max_);
-        count_ += other.count_;
-        if (bins_.empty()) bins_.resize(bin_count, 0);
+    void add(const AngleStatistics& other) {
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            sums_[lane] += other.sums_[lane];
+            sums_of_angles_[lane] += other.sums_of_angles_[lane];
+            max_[lane] = std::max(max_[lane], other.max_[lane]);
+        }
         for (std::size_t i = 0; i < other.bins_.size(); ++i)
             bins_[i] += other.bins_[i];
     }
@@ -198,11 +208,16 @@ class SquaredAngles {
     [[nodiscard]] KernelPrediction prediction(Kernel kernel, int radius) const {
         constexpr double degrees = 180.0 / std::numbers::pi;
         KernelPrediction result{kernel, radius};
-        if (count_ == 0.0) return result;
-        result.rms_degrees = std::sqrt(sum_ / count_) * degrees;
-        result.max_degrees = std::sqrt(max_) * degrees;
-        result.mean_degrees = sum_of_angles_ / count_ * degrees;
-        result.p99_degrees = std::sqrt(percentile_99()) * degrees;
+        const double count = std::accumulate(bins_.begin(), bins_.end(), 0.0);
+        if (count == 0.0) return result;
+        const double max = *std::max_element(max_.begin(), max_.end());
+        const auto mean = [count](const std::array<double, lanes>& sums) {
+            return std::accumulate(sums.begin(), sums.end(), 0.0) / count;
+        };
+        result.rms_degrees = std::sqrt(mean(sums_)) * degrees;
+        result.max_degrees = std::sqrt(max) * degrees;
+        result.mean_degrees = mean(sums_of_angles_) * degrees;
+        result.p99_degrees = std::sqrt(percentile_99(count, max)) * degrees;
         return result;
     }
 
@@ -219,47 +234,108 @@ class SquaredAngles {
     }
 
     /// Returns the upper end of the bin in which the smallest 99 % end.
-    [[nodiscard]] double percentile_99() const {
+    [[nodiscard]] double percentile_99(double all, double max) const {
         double count = 0.0;
         for (std::size_t i = 0; i < bins_.size(); ++i) {
             count += bins_[i];
-            if (count < 0.99 * count_) continue;
+            if (count < 0.99 * all) continue;
             const auto next = static_cast<std::uint32_t>(lowest + i + 1) << shift;
-            return std::min<double>(std::bit_cast<float>(next), max_);
+            return std::min<double>(std::bit_cast<float>(next), max);
         }
-        return max_;
+        return max;
     }
 
-    double sum_ = 0.0;
-    double sum_of_angles_ = 0.0;
-    double max_ = 0.0;
-    double count_ = 0.0;
+    static constexpr std::size_t lanes = 4;
+    std::array<double, lanes> sums_{};
+    std::array<double, lanes> sums_of_angles_{};
+    std::array<double, lanes> max_{};
     std::vector<std::uint32_t> bins_;
 };
 
-/// Sums the squared angles between float normals and the reference. A series of the chord length
-/// approximates the angle; it is exact for small angles and 1% too small at 90 degrees.
-///
-/// \param offset  texels along the border that the normals do not have
-/// \param margin  texels along the border of the reference to exclude
-SquaredAngles squared_angles(const Image& normals, int offset,
-                             std::span<const glm::dvec3> reference, int margin) {
-    const std::span<const float> n = normals.as<float>();
-    const int width = normals.width + 2 * offset;
-    SquaredAngles result;
-    for (int y = margin; y < normals.height + 2 * offset - margin; ++y) {
-        for (int x = margin; x < width - margin; ++x) {
-            const glm::dvec3& exact = reference[static_cast<std::size_t>(y * width + x)];
-            if (exact == glm::dvec3(0.0)) continue;
-            const auto i = static_cast<std::size_t>((y - offset) * normals.width + x - offset);
-            const glm::dvec3 chord = glm::dvec3(n[3 * i], n[3 * i + 1], n[3 * i + 2]) - exact;
-            const double square = glm::dot(chord, chord);
-            const double angle_per_chord = 1.0 + square * (1.0 / 24.0 + square * (3.0 / 640.0));
-            result.add(square * angle_per_chord * angle_per_chord);
+/// Measures the angles between the normals of a kernel and the reference, without the border of a
+/// part.
+class PartErrors {
+  public:
+    /// \param options  with the kernel
+    PartErrors(const Image& part, const ReferenceNormals& reference, const BumpOptions& options,
+               int margin)
+        : part_(part), reference_(reference), options_(options), margin_(margin) {}
+
+    [[nodiscard]] AngleStatistics measured() {
+        const GradientKernel kernel = gradient_kernel(*options_.kernel, options_.gaussian_radius);
+        // Close to the border, a kernel reads extrapolated heights.
+        if (kernel.radius > margin_)
+            measure_extrapolated();
+        else
+            measure_inside(kernel);
+        return std::move(all_);
+    }
+
+  private:
+    [[nodiscard]] std::size_t texel_at(int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(part_.width) +
+               static_cast<std::size_t>(margin_);
+    }
+
+    void measure_inside(const GradientKernel& kernel) {
+        const VectorTarget target = best_vector_target();
+        const KernelWeights<double> weights(kernel);
+        const glm::dvec2 scale = options_.strength / (kernel.divisor * options_.texel);
+        const auto reach = static_cast<std::size_t>(kernel.radius);
+        const auto count = static_cast<std::size_t>(part_.width - 2 * margin_);
+        const float* const heights = part_.as<float>().data();
+        RowsAround<float> rows;
+        rows.steep.resize(2 * reach + 1);
+        std::vector<double> smoothed(count + 2 * reach);
+        std::vector<double> rise(smoothed.size());
+        std::vector<double> right(count);
+        std::vector<double> up(count);
+        for (int y = margin_; y < part_.height - margin_; ++y) {
+            for (std::size_t k = 0; k < rows.steep.size(); ++k)
+                rows.steep[k] = heights + texel_at(y - kernel.radius + static_cast<int>(k)) - reach;
+            rows.across = rows.steep;
+            combine_rows(target, rows, weights, 0, smoothed.size(), smoothed.data(), rise.data());
+            combine_columns(target, weights, smoothed.data() + reach, rise.data() + reach, count,
+                            scale.x, scale.y, right.data(), up.data());
+            add_row(target, texel_at(y), right, up);
         }
     }
-    return result;
-}
+
+    void measure_extrapolated() {
+        const VectorTarget target = best_vector_target();
+        Report ignored;
+        const Image slopes = slopes_from_height(part_, options_, ignored);
+        const std::span<const float> values = slopes.as<float>();
+        std::vector<double> right(static_cast<std::size_t>(part_.width - 2 * margin_));
+        std::vector<double> up(right.size());
+        for (int y = margin_; y < part_.height - margin_; ++y) {
+            for (std::size_t i = 0; i < right.size(); ++i) {
+                right[i] = values[2 * (texel_at(y) + i)];
+                up[i] = values[2 * (texel_at(y) + i) + 1];
+            }
+            add_row(target, texel_at(y), right, up);
+        }
+    }
+
+    void add_row(VectorTarget target, std::size_t first, const std::vector<double>& right,
+                 const std::vector<double>& up) {
+        angles_.resize(right.size());
+        squares_.resize(right.size());
+        angles_between(
+            target, right.data(), up.data(),
+            {reference_.x.data() + first, reference_.y.data() + first, reference_.z.data() + first},
+            right.size(), angles_.data(), squares_.data());
+        all_.add(angles_, squares_, reference_.z.data() + first);
+    }
+
+    const Image& part_;
+    const ReferenceNormals& reference_;
+    const BumpOptions& options_;
+    int margin_;
+    AngleStatistics all_;
+    std::vector<double> angles_;
+    std::vector<double> squares_;
+};
 
 }  // namespace
 
@@ -281,16 +357,6 @@ std::optional<NoiseSpectrum> blurred_noise_of(std::span<const Image> parts,
         tiles.push_back(to_tile(parts[i]));
     if (!have_spectrum(tiles) || tiles.front().width < 16) return std::nullopt;
     return widely_blurred_noise(tiles, root_mean_square_rounding(tiles, coding));
-}
-
-double HeightCoding::rounding_deviation(double height) const {
-    constexpr double of_rounding = 0.28867513459481287;  // The square root of 1/12.
-    if (has_exact_levels) return 0.0;
-    if (depth.bits > 0) return of_rounding * depth.step;
-    if (height == 0.0) return 0.0;
-    int exponent = 0;
-    std::frexp(height, &exponent);
-    return of_rounding * std::ldexp(1.0, exponent - mantissa_bits);
 }
 
 void KernelErrorModel::remove_blocks() {
@@ -405,12 +471,13 @@ void KernelErrorModel::restore() {
     if (!use_spectrum && step == 0.0) return;
     const NoiseSpectrum noise = map_.colored_noise ? *map_.colored_noise : white_noise(rounding);
     if (use_spectrum) {
-        const std::vector<double> gains = map_.spectrum->gains(noise);
+        const std::vector<double> gains =
+            map_.spectrum->gains_of_extension(map_.spectrum->gains(noise));
         const std::size_t pairs = (tiles_.size() + 1) / 2;
         parallel_for(pairs, 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const std::size_t count = std::min<std::size_t>(2, tiles_.size() - 2 * i);
-                remove_noise(std::span(tiles_).subspan(2 * i, count), *map_.spectrum, gains);
+                remove_noise(std::span(tiles_).subspan(2 * i, count), gains);
             }
         });
         return;
@@ -441,71 +508,100 @@ void KernelErrorModel::add_line_noise(HeightTile& tile, Random& random) const {
     add(map_.lines.columns, tile.width, 1, tile.height, tile.width);
 }
 
-/// Returns a tile with new rounding, noise and outliers of the same distribution as in the map.
-Image KernelErrorModel::degraded(const HeightTile& tile, std::uint32_t seed) const {
-    Random random(seed);
-    HeightTile result = tile;
-    const double step = map_.coding.step();
-    // The shift of the codes separates the new steps from remainders of the stored ones.
-    const double shift = 0.382 * step;
+/// Returns noise of the same distribution as in the map, for heights that have none. Empty if there
+/// is none.
+std::vector<double> KernelErrorModel::new_noise(const HeightTile& tile, std::uint32_t seed) const {
     std::vector<double> noise;
-    if (map_.noise > 0.0 && map_.colored_noise) {
+    if (!(map_.noise > 0.0)) return noise;
+    if (map_.colored_noise) {
         noise = noise_field(*map_.colored_noise, tile.width, seed);
         const double share = map_.noise / map_.colored_noise->deviation();
         for (double& value : noise)
             value *= share;
+        return noise;
     }
+    noise.resize(tile.values.size());
+    random_normals(best_vector_target(), seed, noise.size(), noise.data());
+    for (std::size_t i = 0; i < noise.size(); ++i)
+        noise[i] *= map_.noise_by_height ? map_.noise_by_height->at(tile.values[i]) : map_.noise;
+    return noise;
+}
+
+void KernelErrorModel::add_outliers(HeightTile& tile, std::uint32_t seed) const {
+    if (map_.outliers.empty()) return;
+    Random random(seed);
+    for (double& value : tile.values) {
+        if (!(random.between(0.0, 1.0) < map_.outlier_share)) continue;
+        const double which = random.between(0.0, static_cast<double>(map_.outliers.size()));
+        value += map_.outliers[std::min(map_.outliers.size() - 1, static_cast<std::size_t>(which))];
+    }
+}
+
+/// Returns a tile with new rounding, noise and outliers of the same distribution as in the map.
+Image KernelErrorModel::degraded(const HeightTile& tile, std::uint32_t seed) const {
+    HeightTile result = tile;
+    const double step = map_.coding.step();
+    // The shift of the codes separates the new steps from remainders of the stored ones.
+    const double shift = 0.382 * step;
+    Random random(seed ^ 0x6c696e65U);
     if (!map_.stored_is_reference) add_line_noise(result, random);
-    for (std::size_t i = 0; i < result.values.size(); ++i) {
-        double& value = result.values[i];
-        if (!noise.empty())
-            value += noise[i];
-        else if (map_.noise > 0.0 && map_.noise_by_height)
-            value += map_.noise_by_height->at(value) * random.normal();
-        else if (map_.noise > 0.0)
-            value += map_.noise * random.normal();
-        if (!map_.outliers.empty() && random.between(0.0, 1.0) < map_.outlier_share) {
-            const double which = random.between(0.0, static_cast<double>(map_.outliers.size()));
-            value +=
-                map_.outliers[std::min(map_.outliers.size() - 1, static_cast<std::size_t>(which))];
-        }
-    }
+    const std::vector<double> noise = new_noise(result, seed);
+    for (std::size_t i = 0; i < noise.size(); ++i)
+        result.values[i] += noise[i];
+    add_outliers(result, seed ^ 0x73706b65U);
     if (map_.blocks) quantize_blocks(result, *map_.blocks, step);
-    for (double& value : result.values) {
-        if (step > 0.0)
-            value = step * std::floor((value + shift) / step + 0.5) - shift;
-        else
+    if (step > 0.0) {
+        round_to_steps(best_vector_target(), step, shift, result.values.size(),
+                       result.values.data());
+    } else {
+        for (double& value : result.values)
             value += std::numbers::sqrt3 * map_.coding.rounding_deviation(value) *
                      random.between(-1.0, 1.0);
     }
     return to_image(result);
 }
 
+/// Stores the normals of the slopes.
+void KernelErrorModel::set_reference(std::size_t part, const TileSlopes& reference) {
+    const VectorTarget target = best_vector_target();
+    const std::size_t count = reference.right.size();
+    const glm::dvec2 scale = map_.options.strength / map_.options.texel;
+    std::vector<double> right(count, 0.0);
+    std::vector<double> down(count, 0.0);
+    if (map_.unresolved_slope > 0.0) {
+        const auto seed = static_cast<std::uint32_t>(part) ^ 0x6d697373U;
+        random_normals(target, seed, count, right.data());
+        random_normals(target, seed ^ 0x80000000U, count, down.data());
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        right[i] = scale.x * (reference.right[i] + map_.unresolved_slope * right[i]);
+        down[i] = scale.y * (reference.down[i] + map_.unresolved_slope * down[i]);
+    }
+    ReferenceNormals& normals = reference_normals_[part];
+    normals.x.resize(count);
+    normals.y.resize(count);
+    normals.z.resize(count);
+    unit_normals(target, right.data(), down.data(), count,
+                 {normals.x.data(), normals.y.data(), normals.z.data()});
+    for (std::size_t i = 0; i < count; ++i) {
+        if (reference.beside_edge[i] != 0) normals.x[i] = normals.y[i] = normals.z[i] = 0.0;
+    }
+}
+
 void KernelErrorModel::degrade() {
     const double step = map_.coding.step();
     const double min_edge = std::max(3.0 * step, 6.0 * noise());
-    const glm::dvec2 scale = map_.options.strength / map_.options.texel;
     map_.edge_share = 0.0;
     reference_normals_.assign(tiles_.size(), {});
     degraded_.resize(tiles_.size());
-    std::vector<std::size_t> beside_edge(tiles_.size(), 0);
+    std::vector<std::ptrdiff_t> beside_edge(tiles_.size(), 0);
     parallel_for(tiles_.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const TileSlopes reference =
                 reference_slopes(tiles_[i], min_edge, map_.coding.has_exact_levels);
-            Random random(static_cast<std::uint32_t>(i) ^ 0x6d697373U);
-            for (std::size_t texel = 0; texel < reference.slopes.size(); ++texel) {
-                glm::dvec2 slope = reference.slopes[texel] * scale;
-                if (map_.unresolved_slope > 0.0) {
-                    const double along_x = random.normal();
-                    slope += scale * map_.unresolved_slope * glm::dvec2(along_x, random.normal());
-                }
-                const bool is_beside_edge = reference.beside_edge[texel] != 0;
-                reference_normals_[i].push_back(
-                    is_beside_edge ? glm::dvec3(0.0)
-                                   : glm::normalize(glm::dvec3(-slope.x, slope.y, 1.0)));
-                beside_edge[i] += is_beside_edge ? 1 : 0;
-            }
+            set_reference(i, reference);
+            beside_edge[i] =
+                std::count(reference.beside_edge.begin(), reference.beside_edge.end(), 1);
             degraded_[i] = degraded(tiles_[i], static_cast<std::uint32_t>(i));
             if (map_.destaircased && step > 0.0) degraded_[i] = remove_steps(degraded_[i], step);
         }
@@ -513,7 +609,7 @@ void KernelErrorModel::degrade() {
     double texels = 0.0;
     for (std::size_t i = 0; i < tiles_.size(); ++i) {
         map_.edge_share += static_cast<double>(beside_edge[i]);
-        texels += static_cast<double>(reference_normals_[i].size());
+        texels += static_cast<double>(tiles_[i].values.size());
     }
     map_.edge_share /= texels;
 }
@@ -600,13 +696,13 @@ double KernelErrorModel::degrees_of_noise(Kernel kernel, int radius,
         slope_variance(gradient_kernel(kernel, radius), noise) * 0.5 * glm::dot(scale, scale);
     double sum = 0.0;
     double count = 0.0;
-    for (const std::vector<glm::dvec3>& normals : reference_normals_) {
-        for (const glm::dvec3& normal : normals) {
+    for (const ReferenceNormals& normals : reference_normals_) {
+        for (const double z : normals.z) {
             // A slope error along the slope turns the normal by z^2, and one across it by z. Large
             // errors reduce the z of the normal themselves.
-            const double z2 = normal.z * normal.z;
+            const double z2 = z * z;
             sum += z2 * (1.0 + z2) * variance / (1.0 + z2 * variance);
-            count += normal.z > 0.0 ? 1.0 : 0.0;
+            count += z > 0.0 ? 1.0 : 0.0;
         }
     }
     return count > 0.0 ? std::sqrt(sum / count) * 180.0 / std::numbers::pi : 0.0;
@@ -616,25 +712,19 @@ KernelPrediction KernelErrorModel::predict(Kernel kernel, int radius, bool of_sa
     BumpOptions options = map_.options;
     options.kernel = kernel;
     options.gaussian_radius = radius;
-    const int reach = gradient_kernel(kernel, radius).radius;
     // A sample consists of parts on a diagonal.
-    const std::size_t step = of_sample && has_sample() ? 3 : 1;
-    std::vector<SquaredAngles> part_errors((degraded_.size() + step - 1) / step);
+    const std::size_t step = !(of_sample && has_sample()) ? 1 : degraded_.size() == 4 ? 3 : 4;
+    std::vector<AngleStatistics> part_errors((degraded_.size() + step - 1) / step);
     parallel_for(part_errors.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Image& part = degraded_[i * step];
-            // Close to the border of a part, the kernel reads extrapolated heights.
             const int margin = std::min(part.width, part.height) / 8;
-            const int offset = std::max(0, margin - reach);
-            Report ignored;
-            const Image normals = normals_from_height(
-                part_of(part, {offset, offset, part.width - 2 * offset, part.height - 2 * offset}),
-                options, ignored);
-            part_errors[i] = squared_angles(normals, offset, reference_normals_[i * step], margin);
+            part_errors[i] =
+                PartErrors(part, reference_normals_[i * step], options, margin).measured();
         }
     });
-    SquaredAngles all;
-    for (const SquaredAngles& part : part_errors)
+    AngleStatistics all;
+    for (const AngleStatistics& part : part_errors)
         all.add(part);
     return all.prediction(kernel, radius);
 }

@@ -8,6 +8,7 @@
 /// unchanged. Heights are in the unit of the map, where 1.0 is white, and angles are in degrees.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
@@ -32,7 +33,18 @@ struct HeightCoding {
         return depth.bits > 0 && !has_exact_levels ? depth.step : 0.0;
     }
     /// Returns the standard deviation of the rounding error of a height.
-    [[nodiscard]] double rounding_deviation(double height) const;
+    [[nodiscard]] double rounding_deviation(double height) const {
+        constexpr double of_rounding = 0.28867513459481287;  // The square root of 1/12.
+        if (has_exact_levels) return 0.0;
+        if (depth.bits > 0) return of_rounding * depth.step;
+        // The power of two below the height, and that of the lowest bit of the mantissa above 1.
+        constexpr std::uint64_t exponent_bits = 0x7ff0000000000000ULL;
+        constexpr int bias = 1023;
+        const auto height_bits = std::bit_cast<std::uint64_t>(height);
+        const auto unit_bits = static_cast<std::uint64_t>(bias + 1 - mantissa_bits) << 52;
+        return std::bit_cast<double>(height_bits & exponent_bits) *
+               (of_rounding * std::bit_cast<double>(unit_bits));
+    }
 };
 
 /// The properties of a map, without its texels.
@@ -58,6 +70,11 @@ struct KernelProperties {
     double outlier_share = 0.0;
     std::vector<double> outliers;  ///< The heights of the outliers.
     double edge_share = 0.0;
+};
+
+/// Unit normals of a part of a map; 0 beside step edges.
+struct ReferenceNormals {
+    std::vector<double> x, y, z;
 };
 
 /// A reference surface and its degraded version, both from parts of a map.
@@ -119,16 +136,23 @@ class KernelErrorModel {
     [[nodiscard]] NoiseSpectrum white_noise(double rounding) const;
     void restore();
     void add_line_noise(HeightTile& tile, Random& random) const;
+    [[nodiscard]] std::vector<double> new_noise(const HeightTile& tile, std::uint32_t seed) const;
+    void add_outliers(HeightTile& tile, std::uint32_t seed) const;
     [[nodiscard]] Image degraded(const HeightTile& tile, std::uint32_t seed) const;
+    void set_reference(std::size_t part, const TileSlopes& reference);
     void degrade();
 
     KernelProperties map_;
     std::vector<HeightTile> tiles_;        ///< The parts, which restore() turns into the reference.
     std::vector<HeightTile> noisy_tiles_;  ///< Before restore(), without offsets of lines.
     std::vector<HeightTile> tiles_with_lines_;  ///< With these offsets; empty if there are none.
-    std::vector<std::vector<glm::dvec3>> reference_normals_;  ///< 0 beside step edges.
+    std::vector<ReferenceNormals> reference_normals_;
     std::vector<Image> degraded_;
 };
+
+/// Returns the kernel of choose_kernel() without the range of its error and its other readings,
+/// which take a third of the time.
+KernelPrediction best_kernel(const ImageView& height, const BumpOptions& options);
 
 /// Determines the rounding of the heights. \param parts  of one map
 HeightCoding coding_of(std::span<const Image> parts);

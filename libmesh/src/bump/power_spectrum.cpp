@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 
+#include "bump/tile_loops.h"
 #include "image/fft.h"
 #include "image/texel_loops.h"
 #include "portable_math.h"
@@ -82,6 +83,23 @@ double frequency(int index, int side) {
     return 2.0 * pi * (index <= side / 2 ? index : index - side) / side;
 }
 
+/// Returns the number of texels by which remove_noise() extends tiles on each side. Large tiles
+/// serve wide kernels, whose noise is so strong that the filter is wide, too.
+int extension_of(int side) {
+    return side > 64 ? side / 2 : side / 4;
+}
+
+/// Calls with_pair(row, column, times) for one of all coefficients of equal distances from both
+/// axes, with their number.
+template <typename WithPair>
+void for_mirrored_coefficients(int side, const WithPair& with_pair) {
+    const auto times = [side](int index) { return index == 0 || 2 * index == side ? 1.0 : 2.0; };
+    for (int row = 0; 2 * row <= side; ++row) {
+        for (int column = 0; column <= row; ++column)
+            with_pair(row, column, times(row) * times(column) * (row == column ? 1.0 : 2.0));
+    }
+}
+
 }  // namespace
 
 double NoiseSpectrum::at(double x, double y) const {
@@ -92,10 +110,9 @@ double NoiseSpectrum::at(double x, double y) const {
 double NoiseSpectrum::deviation() const {
     if (rings.size() == 1) return std::sqrt(rings.front());
     double power = 0.0;
-    for (int row = 0; row < side; ++row) {
-        for (int column = 0; column < side; ++column)
-            power += at(frequency(column, side), frequency(row, side));
-    }
+    for_mirrored_coefficients(side, [&](int row, int column, double times) {
+        power += times * at(frequency(column, side), frequency(row, side));
+    });
     return std::sqrt(power) / side;
 }
 
@@ -118,14 +135,14 @@ OctaveDeviations NoiseSpectrum::octave_deviations() const {
         }
         double power = 0.0;
         double gain = 0.0;
-        for (std::size_t row = 0; row < count; ++row) {
-            const double y = frequency(static_cast<int>(row), side);
-            for (std::size_t column = 0; column < count; ++column) {
-                const double response = before[row] * before[column] - after[row] * after[column];
-                power += response * response * at(frequency(static_cast<int>(column), side), y);
-                gain += response * response;
-            }
-        }
+        for_mirrored_coefficients(side, [&](int row, int column, double times) {
+            const auto y = static_cast<std::size_t>(row);
+            const auto x = static_cast<std::size_t>(column);
+            const double response = before[y] * before[x] - after[y] * after[x];
+            const double weight = times * response * response;
+            power += weight * at(frequency(column, side), frequency(row, side));
+            gain += weight;
+        });
         result[octave] = std::sqrt(power / gain);
         before = std::move(after);
     }
@@ -133,22 +150,28 @@ OctaveDeviations NoiseSpectrum::octave_deviations() const {
 }
 
 std::vector<double> noise_field(const NoiseSpectrum& spectrum, int side, std::uint32_t seed) {
-    Random random(seed);
-    std::vector<Complex> square(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
-    for (Complex& value : square)
-        value = random.normal();
-    transform_square(square, side, false);
-    for (int row = 0; row < side; ++row) {
-        for (int column = 0; column < side; ++column) {
-            square[static_cast<std::size_t>(row * side + column)] *=
-                std::sqrt(spectrum.at(frequency(column, side), frequency(row, side)));
+    // The transform of white noise is white noise. The real part of its inverse transform has half
+    // of the power.
+    const auto count = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+    std::vector<double> numbers(2 * count);
+    random_normals(best_vector_target(), seed, numbers.size(), numbers.data());
+    std::vector<Complex> square(count);
+    const auto mirrored = [side](int index) { return index == 0 ? 0 : side - index; };
+    for_mirrored_coefficients(side, [&](int y, int x, double) {
+        const double gain = std::sqrt(spectrum.at(frequency(x, side), frequency(y, side))) / side;
+        for (const auto& [row, column] : {std::pair(y, x), std::pair(x, y)}) {
+            for (const int r : {row, mirrored(row)}) {
+                for (const int c : {column, mirrored(column)}) {
+                    const auto i = static_cast<std::size_t>(r * side + c);
+                    square[i] = {gain * numbers[2 * i], gain * numbers[2 * i + 1]};
+                }
+            }
         }
-    }
-    transform_square(square, side, true);
-    std::vector<double> field(square.size());
-    std::transform(square.begin(), square.end(), field.begin(), [&](const Complex& value) {
-        return value.real() / (static_cast<double>(side) * side);
     });
+    transform_square(square, side, true);
+    std::vector<double> field(count);
+    std::transform(square.begin(), square.end(), field.begin(),
+                   [&](const Complex& value) { return value.real(); });
     return field;
 }
 
@@ -159,19 +182,7 @@ void transform_square(std::vector<Complex>& square, int side, bool inverse) {
 }
 
 PowerSpectrum::PowerSpectrum(std::span<const HeightTile> tiles) : side_(tiles[0].width) {
-    const auto bins_of = [this](int side) {
-        std::vector<std::uint32_t> bins(static_cast<std::size_t>(side) *
-                                        static_cast<std::size_t>(side));
-        for (int row = 0; row < side; ++row) {
-            for (int column = 0; column < side; ++column) {
-                bins[static_cast<std::size_t>(row * side + column)] = static_cast<std::uint32_t>(
-                    bin_at(frequency(column, side), frequency(row, side)));
-            }
-        }
-        return bins;
-    };
     bins_of_coefficients_ = bins_of(side_);
-    bins_of_double_side_ = bins_of(2 * side_);
     bins_.resize(static_cast<std::size_t>(side_ * sectors));
     std::vector<double> window(static_cast<std::size_t>(side_));
     double squares = 0.0;
@@ -181,22 +192,55 @@ PowerSpectrum::PowerSpectrum(std::span<const HeightTile> tiles) : side_(tiles[0]
         window[static_cast<std::size_t>(i)] = w;
         squares += w * w;
     }
-    for (const HeightTile& tile : tiles) {
-        const std::vector<double> residual = without_trend(tile);
-        std::vector<Complex> square(residual.size());
-        for (std::size_t i = 0; i < residual.size(); ++i) {
-            square[i] = residual[i] * window[i % static_cast<std::size_t>(side_)] *
-                        window[i / static_cast<std::size_t>(side_)];
+    // Two tiles share a transform, as its real and its imaginary part. The power of both is half of
+    // the sum of that of opposite frequencies, which have the same bin.
+    std::vector<Complex> square;
+    for (std::size_t first = 0; first < tiles.size(); first += 2) {
+        const std::size_t count = std::min<std::size_t>(2, tiles.size() - first);
+        square.assign(bins_of_coefficients_.size(), {});
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::vector<double> residual = without_trend(tiles[first + i]);
+            const Complex part = i == 0 ? Complex(1.0, 0.0) : Complex(0.0, 1.0);
+            for (std::size_t row = 0; row < window.size(); ++row) {
+                for (std::size_t column = 0; column < window.size(); ++column) {
+                    const std::size_t texel = row * window.size() + column;
+                    square[texel] += part * (residual[texel] * window[row] * window[column]);
+                }
+            }
         }
         transform_square(square, side_, false);
         for (std::size_t i = 0; i < square.size(); ++i) {
             Bin& bin = bins_[bins_of_coefficients_[i]];
-            bin.power += std::norm(square[i]) / (squares * squares);
-            bin.count += 1.0;
+            bin.power += std::norm(square[i]);
+            bin.count += static_cast<double>(count);
         }
     }
     for (Bin& bin : bins_)
+        bin.power /= squares * squares;
+    for (Bin& bin : bins_)
         bin.power /= std::max(1.0, bin.count);
+}
+
+std::vector<std::uint32_t> PowerSpectrum::bins_of(int side) const {
+    std::vector<std::uint32_t> bins(static_cast<std::size_t>(side) *
+                                    static_cast<std::size_t>(side));
+    // Opposite frequencies have the same bin.
+    const auto mirrored = [side](int index) { return index == 0 ? 0 : side - index; };
+    for (int row = 0; 2 * row <= side; ++row) {
+        for (int column = 0; column < side; ++column) {
+            const auto bin =
+                static_cast<std::uint32_t>(bin_at(frequency(column, side), frequency(row, side)));
+            const bool has_opposite = 2 * row != side && 2 * column != side;
+            bins[static_cast<std::size_t>(row * side + column)] = bin;
+            if (has_opposite)
+                bins[static_cast<std::size_t>(mirrored(row) * side + mirrored(column))] = bin;
+        }
+    }
+    for (int row = side / 2 + 1; row < side; ++row) {
+        bins[static_cast<std::size_t>(row * side + side / 2)] =
+            static_cast<std::uint32_t>(bin_at(frequency(side / 2, side), frequency(row, side)));
+    }
+    return bins;
 }
 
 std::size_t PowerSpectrum::bin_at(double x, double y) const {
@@ -478,18 +522,19 @@ double PowerSpectrum::unresolved_slope(const NoiseSpectrum& noise) const {
     return std::sqrt(0.5 * (1.0 + amount_above_nyquist) * square) / side_;
 }
 
-void PowerSpectrum::multiply(std::vector<Complex>& square, std::span<const double> gains) const {
-    for (std::size_t i = 0; i < square.size(); ++i)
-        square[i] *= gains[bins_of_double_side_[i]];
+std::vector<double> PowerSpectrum::gains_of_extension(std::span<const double> gains) const {
+    std::vector<double> result;
+    for (const std::uint32_t bin : bins_of(side_ + 2 * extension_of(side_)))
+        result.push_back(gains[bin]);
+    return result;
 }
 
-void remove_noise(std::span<HeightTile> tiles, const PowerSpectrum& spectrum,
-                  std::span<const double> gains) {
+void remove_noise(std::span<HeightTile> tiles, std::span<const double> gains) {
     // Both tiles have one transform, as its real and its imaginary part: the gains are real and
     // equal for opposite frequencies.
     const int tile_side = tiles.front().width;
-    const int side = 2 * tile_side;
-    const int margin = tile_side / 2;
+    const int margin = extension_of(tile_side);
+    const int side = tile_side + 2 * margin;
     // The tiles are extended by reflection, and a Hann window fades out the extension.
     std::vector<double> fade(static_cast<std::size_t>(side), 1.0);
     for (int i = 0; i < margin; ++i) {
@@ -522,7 +567,8 @@ void remove_noise(std::span<HeightTile> tiles, const PowerSpectrum& spectrum,
         }
     }
     transform_square(square, side, false);
-    spectrum.multiply(square, gains);
+    for (std::size_t i = 0; i < square.size(); ++i)
+        square[i] *= gains[i];
     transform_square(square, side, true);
     const double scale = 1.0 / (static_cast<double>(side) * side);
     for (std::size_t i = 0; i < tiles.size(); ++i) {

@@ -5,7 +5,9 @@
 // Tests: tests/mesh/bump/structured_noise_test.cpp.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "bump/height_tile.h"
@@ -29,45 +31,72 @@ std::vector<double> high_pass_of_line(std::vector<double> line, int times) {
     return line;
 }
 
-/// Returns the heights of each row, or column, weighted by a wave along it: of `periods` periods
-/// per tile, and 1 for none. The result of white noise has the deviation 1 / sqrt(length).
-std::vector<double> line_sums(const HeightTile& tile, bool rows, int periods, double phase) {
-    const int length = rows ? tile.width : tile.height;
-    const int count = rows ? tile.height : tile.width;
+/// Returns the weights of the texels of a line for a wave along it: of `periods` periods, and equal
+/// weights for none. The weighted sum of white noise has the deviation 1 / sqrt(length).
+std::vector<double> wave_weights(int length, int periods, double phase) {
     std::vector<double> weights(static_cast<std::size_t>(length), 1.0 / length);
-    if (periods > 0) {
-        for (int i = 0; i < length; ++i) {
-            const double angle = 2.0 * std::numbers::pi * periods * (i + 0.5) / length + phase;
-            weights[static_cast<std::size_t>(i)] *= std::numbers::sqrt2 * portable::cos(angle);
-        }
+    for (int i = 0; i < length && periods > 0; ++i) {
+        const double angle = 2.0 * std::numbers::pi * periods * (i + 0.5) / length + phase;
+        weights[static_cast<std::size_t>(i)] *= std::numbers::sqrt2 * portable::cos(angle);
     }
-    std::vector<double> sums(static_cast<std::size_t>(count), 0.0);
-    for (int line = 0; line < count; ++line) {
-        for (int i = 0; i < length; ++i) {
-            const int texel = rows ? line * tile.width + i : i * tile.width + line;
-            sums[static_cast<std::size_t>(line)] +=
-                weights[static_cast<std::size_t>(i)] * tile.values[static_cast<std::size_t>(texel)];
+    return weights;
+}
+
+/// Returns the weighted sum of the heights of each row, or column.
+std::vector<double> line_sums(const HeightTile& tile, bool rows, std::span<const double> weights) {
+    const auto width = static_cast<std::size_t>(tile.width);
+    const auto height = static_cast<std::size_t>(tile.height);
+    std::vector<double> sums(rows ? height : width, 0.0);
+    if (rows) {
+        // Eight sums at once, so that additions need not wait for each other.
+        constexpr std::size_t lanes = 8;
+        for (std::size_t y = 0; y < height; ++y) {
+            const double* const line = tile.values.data() + y * width;
+            std::array<double, lanes> parts{};
+            std::size_t x = 0;
+            for (; x + lanes <= width; x += lanes) {
+                for (std::size_t lane = 0; lane < lanes; ++lane)
+                    parts[lane] += weights[x + lane] * line[x + lane];
+            }
+            for (; x < width; ++x)
+                parts[0] += weights[x] * line[x];
+            sums[y] = ((parts[0] + parts[1]) + (parts[2] + parts[3])) +
+                      ((parts[4] + parts[5]) + (parts[6] + parts[7]));
         }
+        return sums;
+    }
+    for (std::size_t y = 0; y < height; ++y) {
+        const double* const line = tile.values.data() + y * width;
+        for (std::size_t x = 0; x < width; ++x)
+            sums[x] += weights[y] * line[x];
     }
     return sums;
+}
+
+/// Returns the mean of each row, or column.
+std::vector<double> line_means(const HeightTile& tile, bool rows) {
+    return line_sums(tile, rows, wave_weights(rows ? tile.width : tile.height, 0, 0.0));
 }
 
 double line_deviation(std::span<const HeightTile> tiles, bool rows, double rounding) {
     std::vector<double> offsets;
     std::vector<double> smoother_offsets;
     std::vector<double> waves;
+    std::vector<std::vector<double>> weights;
+    const int length = rows ? tiles.front().width : tiles.front().height;
+    for (const int periods : {2, 3, 4}) {
+        for (const double phase : {0.0, std::numbers::pi / 2.0})
+            weights.push_back(wave_weights(length, periods, phase));
+    }
     for (const HeightTile& tile : tiles) {
-        const std::vector<double> sums = line_sums(tile, rows, 0, 0.0);
+        const std::vector<double> sums = line_means(tile, rows);
         for (const double value : high_pass_of_line(sums, 2))
             smoother_offsets.push_back(value);
         for (const double value : high_pass_of_line(sums, 3))
             offsets.push_back(value);
-        for (const int periods : {2, 3, 4}) {
-            for (const double phase : {0.0, std::numbers::pi / 2.0}) {
-                for (const double value :
-                     high_pass_of_line(line_sums(tile, rows, periods, phase), 3))
-                    waves.push_back(value);
-            }
+        for (const std::vector<double>& wave : weights) {
+            for (const double value : high_pass_of_line(line_sums(tile, rows, wave), 3))
+                waves.push_back(value);
         }
     }
     const double deviation = deviation_from_quantile(offsets);
@@ -85,7 +114,7 @@ double line_deviation(std::span<const HeightTile> tiles, bool rows, double round
 }
 
 void remove_offsets(HeightTile& tile, bool rows, double deviation) {
-    std::vector<double> sums = line_sums(tile, rows, 0, 0.0);
+    std::vector<double> sums = line_means(tile, rows);
     HeightTile smooth{static_cast<int>(sums.size()), 1, Wrap::clamp, sums};
     static constexpr std::array binomial = {0.375, 0.25, 0.0625};
     for (const int spacing : {1, 2, 4})
@@ -121,58 +150,80 @@ double NoiseByHeight::at(double height) const {
     return std::lerp(deviations[above - 1], deviations[above], w);
 }
 
-std::optional<NoiseByHeight> noise_by_height(std::span<const HeightTile> tiles) {
+namespace {
+
+/// A height and the magnitude of the noise there.
+struct NoiseSample {
+    float height;
+    float magnitude;
+};
+
+/// Sorts samples by their heights, in time proportional to their number.
+void sort_by_height(std::vector<NoiseSample>& samples) {
+    constexpr unsigned digit_bits = 11;
+    constexpr std::uint32_t digits = 1U << digit_bits;
+    const auto key_of = [](float height) {
+        const auto bits = std::bit_cast<std::uint32_t>(height + 0.0F);
+        return bits ^ (bits >> 31 != 0 ? 0xffffffffU : 0x80000000U);
+    };
+    std::vector<NoiseSample> sorted(samples.size());
+    for (unsigned shift = 0; shift < 32; shift += digit_bits) {
+        std::array<std::uint32_t, digits + 1> begins{};
+        for (const NoiseSample& sample : samples)
+            ++begins[(key_of(sample.height) >> shift & (digits - 1)) + 1];
+        for (std::uint32_t digit = 0; digit < digits; ++digit)
+            begins[digit + 1] += begins[digit];
+        for (const NoiseSample& sample : samples)
+            sorted[begins[key_of(sample.height) >> shift & (digits - 1)]++] = sample;
+        samples.swap(sorted);
+    }
+}
+
+/// Returns heights and magnitudes at every other row.
+std::vector<NoiseSample> noise_samples(std::span<const HeightTile> tiles) {
     static constexpr std::array binomial = {0.375, 0.25, 0.0625};
-    constexpr std::size_t classes = 6;
-    constexpr std::size_t min_samples = 200;
-    std::vector<std::pair<double, double>> samples;  // Height and magnitude of the noise.
+    std::vector<NoiseSample> samples;
     for (const HeightTile& tile : tiles) {
         const HeightTile smooth = filtered(filtered(tile, binomial), binomial, 2);
         const std::vector<double> magnitudes = high_pass(tile, 2);
         constexpr int margin = 2;  // Of high_pass().
-        std::size_t next = 0;
         for (int y = margin; y < tile.height - margin; y += 2) {
-            next = static_cast<std::size_t>((y - margin) * (tile.width - 2 * margin));
+            auto next = static_cast<std::size_t>((y - margin) * (tile.width - 2 * margin));
             for (int x = margin; x < tile.width - margin; ++x) {
-                samples.emplace_back(smooth.values[static_cast<std::size_t>(y * tile.width + x)],
-                                     magnitudes[next++]);
+                const auto texel = static_cast<std::size_t>(y * tile.width + x);
+                samples.push_back({static_cast<float>(smooth.values[texel]),
+                                   static_cast<float>(magnitudes[next++])});
             }
         }
     }
+    return samples;
+}
+
+}  // namespace
+
+std::optional<NoiseByHeight> noise_by_height(std::span<const HeightTile> tiles) {
+    constexpr std::size_t classes = 6;
+    constexpr std::size_t min_samples = 200;
+    std::vector<NoiseSample> samples = noise_samples(tiles);
     if (samples.size() < classes * min_samples) return std::nullopt;
+    sort_by_height(samples);
     NoiseByHeight noise;
     std::vector<double> tails;  // Ratios of deviations by the median and by the quantile.
     std::vector<double> magnitudes;
     std::size_t begin = 0;
-    const auto sample_at = [&](std::size_t i) {
-        return samples.begin() + static_cast<std::ptrdiff_t>(i);
-    };
     for (std::size_t i = 0; i < classes; ++i) {
         std::size_t end = samples.size() * (i + 1) / classes;
         if (begin + min_samples > end) continue;
-        // Moves the samples of the class to its place, and those of larger heights behind it. A
-        // flat ground is one class.
-        if (end < samples.size()) {
-            std::nth_element(sample_at(begin), sample_at(end), samples.end());
-            const double last = sample_at(end)->first;
-            if (std::count_if(sample_at(begin), sample_at(end),
-                              [last](const auto& sample) { return sample.first >= last; }) > 0) {
-                end = static_cast<std::size_t>(
-                    std::partition(sample_at(end), samples.end(),
-                                   [last](const auto& sample) { return sample.first <= last; }) -
-                    samples.begin());
-            }
-        }
-        std::nth_element(sample_at(begin), sample_at((begin + end) / 2), sample_at(end));
+        // A flat ground is one class.
+        while (end < samples.size() && samples[end].height == samples[end - 1].height)
+            ++end;
         magnitudes.clear();
         for (std::size_t k = begin; k < end; ++k)
-            magnitudes.push_back(samples[k].second);
+            magnitudes.push_back(samples[k].magnitude);
         const double deviation = deviation_from_quantile(magnitudes);
         // Half of a Gaussian lies within 0.6745 standard deviations.
-        const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
-        std::nth_element(magnitudes.begin(), middle, magnitudes.end());
-        tails.push_back(*middle / 0.6745 / deviation);
-        noise.heights.push_back(samples[(begin + end) / 2].first);
+        tails.push_back(smallest_of(magnitudes, magnitudes.size() / 2) / 0.6745 / deviation);
+        noise.heights.push_back(samples[(begin + end) / 2].height);
         noise.deviations.push_back(deviation);
         begin = end;
     }

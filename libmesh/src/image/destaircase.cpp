@@ -63,18 +63,14 @@ class Binomial {
     }
 
     /// \param rows    the rows y - 2 s, y - s, y, y + s and y + 2 s
-    /// \param beyond  returns the value of a column beyond the border, from the line of columns
-    ///                inside
-    template <typename Beyond>
-    void row(const std::array<const float*, 5>& rows, const Beyond& beyond, float* result) {
+    /// \param extend  extends a line of columns inside beyond both ends by some columns
+    template <typename Extend>
+    void row(const std::array<const float*, 5>& rows, const Extend& extend, float* result) {
         const std::ptrdiff_t s = spacing_;
         float* const line = line_.data() + 2 * s;
         for (std::ptrdiff_t x = 0; x < width_; ++x)
             line[x] = sum(rows[0][x], rows[1][x], rows[2][x], rows[3][x], rows[4][x]);
-        for (int x = 1; x <= 2 * spacing_; ++x) {
-            line[-x] = beyond(line, -x);
-            line[width_ - 1 + x] = beyond(line, width_ - 1 + x);
-        }
+        extend(line, 2 * spacing_);
         for (std::ptrdiff_t x = 0; x < width_; ++x)
             result[x] = sum(line[x - 2 * s], line[x - s], line[x], line[x + s], line[x + 2 * s]);
     }
@@ -89,14 +85,56 @@ class Binomial {
     std::vector<float> line_;
 };
 
+/// Extends a line by the rule of a border. Columns beyond the other end are known already.
+void extend_line(float* line, int width, int columns, Wrap wrap) {
+    float* const last = line + width - 1;
+    for (int x = 1; x <= columns; ++x) {
+        if (wrap == Wrap::mirror) {
+            line[-x] = line[x - 1];
+            last[x] = last[1 - x];
+        } else if (wrap == Wrap::repeat) {
+            line[-x] = line[width - x];
+            last[x] = line[x - 1];
+        } else {
+            line[-x] = line[0];
+            last[x] = last[0];
+        }
+    }
+}
+
+/// Extends a line by reflected(), whose reflections of columns beyond the other end are known
+/// already.
+void extend_reflected(float* line, int width, int columns) {
+    if (width == 1) return extend_line(line, width, columns, Wrap::clamp);
+    float* const last = line + width - 1;
+    for (int x = 1; x <= columns; ++x) {
+        line[-x] = 2 * line[0] - line[x];
+        last[x] = 2 * last[0] - last[-x];
+    }
+}
+
+/// Applies reflected() to a whole row.
+void read_reflected(const Plane& plane, int row, float* to) {
+    if (row >= 0 && row < plane.height) {
+        std::copy_n(plane.row(row), plane.width, to);
+        return;
+    }
+    if (plane.height == 1) return read_reflected(plane, 0, to);
+    const int edge = row < 0 ? 0 : plane.height - 1;
+    read_reflected(plane, 2 * edge - row, to);
+    const float* const border = plane.row(edge);
+    for (std::ptrdiff_t x = 0; x < plane.width; ++x)
+        to[x] = 2 * border[x] - to[x];
+}
+
 /// Computes the low frequencies of the next scale.
 void smooth(const Plane& from, const Wraps& wrap, int spacing, Plane& to) {
     for_rows(from, [&](int begin, int end) {
         Binomial binomial(from.width, spacing);
         std::array<std::vector<float>, 5> rooms;
-        const auto beyond = [&](const float* line, int x) {
-            if (wrap.x != Wrap::clamp) return line[place_within(x, from.width, wrap.x)];
-            return reflected(x, from.width, [&](int column) { return line[column]; });
+        const auto extend = [&](float* line, int columns) {
+            if (wrap.x == Wrap::clamp) return extend_reflected(line, from.width, columns);
+            extend_line(line, from.width, columns, wrap.x);
         };
         for (int y = begin; y < end; ++y) {
             std::array<const float*, 5> rows{};
@@ -106,13 +144,10 @@ void smooth(const Plane& from, const Wraps& wrap, int spacing, Plane& to) {
                 rows[k] = is_made ? nullptr : from.row(place_within(place, from.height, wrap.y));
                 if (!is_made) continue;
                 rooms[k].resize(static_cast<std::size_t>(from.width));
-                for (int x = 0; x < from.width; ++x) {
-                    rooms[k][static_cast<std::size_t>(x)] =
-                        reflected(place, from.height, [&](int row) { return from.row(row)[x]; });
-                }
+                read_reflected(from, place, rooms[k].data());
                 rows[k] = rooms[k].data();
             }
-            binomial.row(rows, beyond, to.row(y));
+            binomial.row(rows, extend, to.row(y));
         }
     });
 }
@@ -134,45 +169,47 @@ struct Surface {
 
 /// Moves the heights towards the surface by its trust, which is full where its distance from the
 /// codes is that of rounding.
+///
+/// \param squares  gets the squared distances
 void follow(const Surface& surface, const Plane& codes, const Wraps& wrap, int spacing,
-            Plane& trust, Plane& heights) {
+            Plane& squares, Plane& trust, Plane& heights) {
     const int width = codes.width;
     // A power continues beyond a clamped border with its mirror image, not with its point
     // reflection.
     const Wrap x_rule = wrap.x == Wrap::clamp ? Wrap::mirror : wrap.x;
     const Wrap y_rule = wrap.y == Wrap::clamp ? Wrap::mirror : wrap.y;
     for_rows(codes, [&](int begin, int end) {
+        for (int y = begin; y < end; ++y) {
+            const float* const code = codes.row(y);
+            float* const square = squares.row(y);
+            surface.row(y, square);
+            for (std::ptrdiff_t x = 0; x < width; ++x)
+                square[x] = (square[x] - code[x]) * (square[x] - code[x]);
+        }
+    });
+    for_rows(codes, [&](int begin, int end) {
         Binomial binomial(width, spacing);
-        const auto beyond = [&](const float* line, int x) {
-            return line[place_within(x, width, x_rule)];
+        const auto extend = [&](float* line, int columns) {
+            extend_line(line, width, columns, x_rule);
         };
-        std::array<std::vector<float>, 5> squares;
-        for (std::vector<float>& row : squares)
-            row.resize(static_cast<std::size_t>(width));
         std::vector<float> own(static_cast<std::size_t>(width));
         std::vector<float> power(static_cast<std::size_t>(width));
         for (int y = begin; y < end; ++y) {
             std::array<const float*, 5> rows{};
-            for (std::size_t k = 0; k < 5; ++k) {
-                const int place =
-                    place_within(y + (static_cast<int>(k) - 2) * spacing, codes.height, y_rule);
-                surface.row(place, squares[k].data());
-                if (k == 2) std::copy(squares[k].begin(), squares[k].end(), own.begin());
-                const float* const code = codes.row(place);
-                float* const square = squares[k].data();
-                for (std::ptrdiff_t x = 0; x < width; ++x)
-                    square[x] = (square[x] - code[x]) * (square[x] - code[x]);
-                rows[k] = square;
-            }
-            binomial.row(rows, beyond, power.data());
+            for (std::size_t k = 0; k < 5; ++k)
+                rows[k] = squares.row(
+                    place_within(y + (static_cast<int>(k) - 2) * spacing, codes.height, y_rule));
+            binomial.row(rows, extend, power.data());
+            surface.row(y, own.data());
+            const float* const smooth_power = power.data();
+            const float* const to = own.data();
             float* const trusted = trust.row(y);
             float* const height = heights.row(y);
             for (std::ptrdiff_t x = 0; x < width; ++x) {
-                const float share =
-                    (refused - power[static_cast<std::size_t>(x)]) * (1.0F / (refused - believed));
+                const float share = (refused - smooth_power[x]) * (1.0F / (refused - believed));
                 // A texel that is not trusted at one scale is not trusted at wider ones.
                 trusted[x] = std::max(0.0F, std::min(share, trusted[x]));
-                height[x] += trusted[x] * (own[static_cast<std::size_t>(x)] - height[x]);
+                height[x] += trusted[x] * (to[x] - height[x]);
             }
         }
     });
@@ -211,13 +248,15 @@ Destaircased destaircase(const Image& height, const DestaircaseOptions& options)
     Plane trust{codes.width, codes.height, std::vector<float>(codes.values.size(), 1.0F)};
     Plane low = codes;
     Plane lower = codes;
+    Plane squares = codes;
     smooth(codes, options.wrap, 1, low);
     float variance = 1.0F;  // The variance of the smoothing so far, in squared texels.
     for (int scale = 0; scale < scales; ++scale) {
         const int spacing = 1 << scale;
         const float more = 4.0F * static_cast<float>(spacing) * static_cast<float>(spacing);
         smooth(low, options.wrap, 2 * spacing, lower);
-        follow({low, lower, variance / more}, codes, options.wrap, 2 * spacing, trust, now);
+        follow({low, lower, variance / more}, codes, options.wrap, 2 * spacing, squares, trust,
+               now);
         variance += more;
         std::swap(low.values, lower.values);
     }

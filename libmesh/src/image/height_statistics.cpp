@@ -64,24 +64,17 @@ auto on_heights(const Image& image, const WithHeights& with_heights) {
 /// Detects levels that were rounded to the codes of the file, as the 32 levels of 5 bits in a file
 /// of 8 bits are: 0, 8, 16, 25, ...
 ///
+/// \param used  all codes that occur, in ascending order
+/// \param divisor  of their differences, which counts as one code
 /// \return the mean distance of adjacent levels in codes, 1 if there are no such levels
-template <typename Sample>
-double level_spacing(std::span<const Sample> samples, double least, double greatest, double code) {
-    const double max_code = (greatest - least) / code;
-    constexpr double max_codes = 65536.0;
-    if (!(max_code < max_codes)) return 1.0;
-    std::vector<unsigned char> is_used(static_cast<std::size_t>(max_code + 1.5), 0);
-    for (const Sample sample : samples) {
-        const double value = static_cast<double>(sample);
-        if (std::isfinite(value))
-            is_used[static_cast<std::size_t>((value - least) / code + 0.5)] = 1;
+double level_spacing(const std::vector<unsigned>& used, unsigned divisor) {
+    for (std::size_t i = 1; i < used.size(); ++i) {
+        if (used[i] - used[i - 1] == divisor) return 1.0;
     }
     std::vector<double> codes;
-    for (std::size_t i = 0; i < is_used.size(); ++i) {
-        if (is_used[i] == 0) continue;
-        if (!codes.empty() && static_cast<double>(i) - codes.back() < 1.5) return 1.0;
-        codes.push_back(static_cast<double>(i));
-    }
+    for (const unsigned code : used)
+        codes.push_back((code - used.front()) / divisor);
+    const double max_code = codes.back();
     // Masks and terraces have fewer levels.
     constexpr std::size_t min_levels = 8;
     if (codes.size() < min_levels) return 1.0;
@@ -122,19 +115,71 @@ double level_spacing(std::span<const Sample> samples, double least, double great
 
 template <typename Sample>
 HeightDepth depth_of(const Heights<Sample>& heights) {
-    const auto [least, greatest] =
-        std::minmax_element(heights.samples().begin(), heights.samples().end());
-    if (*least == *greatest) return {1, *least == 0 ? 1.0 : *least / heights.largest};
-    unsigned divisor = 0;
-    for (const Sample sample : heights.samples()) {
-        divisor = std::gcd(divisor, static_cast<unsigned>(sample - *least));
-        if (divisor == 1) break;
+    std::vector<unsigned char> is_used(std::size_t{std::numeric_limits<Sample>::max()} + 1, 0);
+    for (const Sample sample : heights.samples())
+        is_used[sample] = 1;
+    std::vector<unsigned> used;
+    for (std::size_t i = 0; i < is_used.size(); ++i) {
+        if (is_used[i] != 0) used.push_back(static_cast<unsigned>(i));
     }
-    const double spacing = level_spacing(heights.samples(), *least, *greatest, divisor);
+    const unsigned least = used.front();
+    if (used.size() == 1) return {1, least == 0 ? 1.0 : least / heights.largest};
+    unsigned divisor = 0;
+    for (std::size_t i = 1; i < used.size() && divisor != 1; ++i)
+        divisor = std::gcd(divisor, used[i] - used[i - 1]);
+    const double spacing = level_spacing(used, divisor);
     // The mean of rounded distances has an error; the distance of codes is exact.
     const double slack = spacing > 1.0 ? 0.25 : 0.0;
     const auto levels = static_cast<unsigned>(heights.largest / (spacing * divisor) + slack);
     return {static_cast<int>(std::bit_width(levels)), spacing * divisor / heights.largest};
+}
+
+/// Returns the codes that occur, in ascending order. Empty if there are too many.
+std::vector<unsigned> used_codes(std::span<const float> samples, double least, double greatest,
+                                 double code) {
+    const double max_code = (greatest - least) / code;
+    constexpr double max_codes = 65536.0;
+    std::vector<unsigned> codes;
+    if (!(max_code < max_codes)) return codes;
+    std::vector<unsigned char> is_used(static_cast<std::size_t>(max_code + 1.5), 0);
+    for (const float sample : samples) {
+        const double value = static_cast<double>(sample);
+        if (std::isfinite(value))
+            is_used[static_cast<std::size_t>((value - least) / code + 0.5)] = 1;
+    }
+    for (std::size_t i = 0; i < is_used.size(); ++i) {
+        if (is_used[i] != 0) codes.push_back(static_cast<unsigned>(i));
+    }
+    return codes;
+}
+
+/// The least and the greatest finite sample; infinity and -infinity if there is none.
+struct SampleRange {
+    float least = std::numeric_limits<float>::infinity();
+    float greatest = -std::numeric_limits<float>::infinity();
+};
+
+SampleRange range_of(std::span<const float> samples) {
+    // Samples are compared in several lanes, which need not wait for each other.
+    constexpr std::size_t lanes = 16;
+    std::array<SampleRange, lanes> ranges{};
+    const auto add = [](SampleRange& range, float sample) {
+        const bool is_finite = std::abs(sample) <= std::numeric_limits<float>::max();
+        range.least = is_finite && sample < range.least ? sample : range.least;
+        range.greatest = is_finite && sample > range.greatest ? sample : range.greatest;
+    };
+    std::size_t i = 0;
+    for (; i + lanes <= samples.size(); i += lanes) {
+        for (std::size_t lane = 0; lane < lanes; ++lane)
+            add(ranges[lane], samples[i + lane]);
+    }
+    for (; i < samples.size(); ++i)
+        add(ranges[0], samples[i]);
+    for (const SampleRange& range : ranges) {
+        ranges[0].least = std::min(ranges[0].least, range.least);
+        ranges[0].greatest = std::max(ranges[0].greatest, range.greatest);
+    }
+    return ranges[0];
 }
 
 /// Returns whether all heights are multiples of a step within the rounding of float.
@@ -147,13 +192,9 @@ bool are_multiples(std::span<const float> heights, double step) {
 }
 
 HeightDepth depth_of(const Heights<float>& heights) {
-    double least = std::numeric_limits<double>::infinity();
-    double greatest = -least;
-    for (const float sample : heights.samples()) {
-        if (!std::isfinite(sample)) continue;
-        least = std::min(least, static_cast<double>(sample));
-        greatest = std::max(greatest, static_cast<double>(sample));
-    }
+    const SampleRange range = range_of(heights.samples());
+    const double least = range.least;
+    const double greatest = range.greatest;
     if (!(least < greatest))
         return {1, std::isfinite(least) && least != 0.0 ? std::abs(least) : 1.0};
     // Every float beyond 2^24 steps is a multiple of the step, whatever its origin.
@@ -165,7 +206,9 @@ HeightDepth depth_of(const Heights<float>& heights) {
     for (int bits = 1; bits <= 16; ++bits) {
         for (const double levels : {std::ldexp(1.0, bits) - 1.0, std::ldexp(1.0, bits)}) {
             if (!are_on_levels(levels)) continue;
-            const double spacing = level_spacing(heights.samples(), least, greatest, 1.0 / levels);
+            const std::vector<unsigned> codes =
+                used_codes(heights.samples(), least, greatest, 1.0 / levels);
+            const double spacing = codes.empty() ? 1.0 : level_spacing(codes, 1);
             const auto coarse = static_cast<unsigned>(levels / spacing + 0.25);
             return {spacing > 1.0 ? static_cast<int>(std::bit_width(coarse)) : bits,
                     spacing / levels};

@@ -81,7 +81,8 @@ TEST(PowerSpectrum, FilterRemovesNoiseAndKeepsWaves) {
     const HeightTile noise[] = {noise_of(0.5, 1), noise_of(0.5, 2), noise_of(0.5, 3)};
     const PowerSpectrum of_noise(noise);
     const auto without_noise = [](HeightTile tile, const PowerSpectrum& spectrum) {
-        remove_noise(std::span(&tile, 1), spectrum, spectrum.gains(NoiseSpectrum::white(0.5)));
+        const std::vector<double> gains = spectrum.gains(NoiseSpectrum::white(0.5));
+        remove_noise(std::span(&tile, 1), spectrum.gains_of_extension(gains));
         return tile;
     };
     EXPECT_LT(root_mean_square(without_noise(noise[0], of_noise), 8), 0.08);
@@ -98,7 +99,7 @@ TEST(PowerSpectrum, FilterRemovesNoiseAndKeepsWaves) {
     HeightTile rest = without_noise(noisy[1], of_noisy);
     // Two tiles share a transform, which does not mix them.
     HeightTile pair[] = {noisy[0], noisy[1]};
-    remove_noise(pair, of_noisy, of_noisy.gains(NoiseSpectrum::white(0.5)));
+    remove_noise(pair, of_noisy.gains_of_extension(of_noisy.gains(NoiseSpectrum::white(0.5))));
     for (std::size_t i = 0; i < rest.values.size(); ++i)
         EXPECT_NEAR(pair[1].values[i], rest.values[i], 1e-12);
     for (std::size_t i = 0; i < rest.values.size(); ++i)
