@@ -343,9 +343,6 @@ PictureError picture_error(const Image& ground_truth, const Image& picture);
 /// \param side    at least 1
 Image averaged(const Image& linear, int side);
 
-/// The first three channels.
-Image without_alpha(const Image& image);
-
 // Tangent methods, the basis that a fragment shader makes of their tangents, and the errors of both
 // on textured analytic surfaces.
 

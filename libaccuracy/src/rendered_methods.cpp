@@ -51,7 +51,8 @@ class Drawing {
 
     /// Three channels: 8-bit sRGB, or linear floats.
     [[nodiscard]] Image picture() {
-        const Image picture = without_alpha(renderer_->draw(*rendering_.scene.camera).image);
+        Image picture = renderer_->draw(*rendering_.scene.camera).image;
+        drop_alpha(picture);
         if (rendering_.pixels_per_side == 1) return picture;
         return to_srgb(averaged(to_linear(picture), rendering_.pixels_per_side), 8);
     }
@@ -212,28 +213,33 @@ Image supersampled_reference(const Scene& scene, int size, int rays_per_side) {
     Report report;
     const int side = size * rays_per_side;
     const Reference reference = render_reference(scene, {side, side, 0.0}, report);
-    const Image shown = reference_picture(reference.radiance, scene, OutputCoding::clamped);
-    return without_alpha(averaged(shown, rays_per_side));
+    Image shown = reference_picture(reference.radiance, scene, OutputCoding::clamped);
+    drop_alpha(shown);
+    return averaged(shown, rays_per_side);
 }
 
 std::size_t torus_triangles(int slices) {
     return static_cast<std::size_t>(slices) * static_cast<std::size_t>(slices);
 }
 
-RenderedMethod method_on_torus(const std::string& choice, const std::string& method, int slices,
-                               const std::function<Scene(int slices)>& scene) {
+RenderedMethod method_on_torus(const std::string& choice, const TorusMethod& method, int slices) {
     const std::string triangles = std::to_string(torus_triangles(slices));
-    return {method + ", " + triangles + " triangles",
-            {{choice, method}, {"triangles", triangles}},
-            [=](double) { return Rendering{scene(slices)}; }};
+    return {.name = method.name + ", " + triangles + " triangles",
+            .choices = {{choice, method.name}, {"triangles", triangles}},
+            .compute = [=](double) { return Rendering{method.scene(slices)}; },
+            .stored_bytes = method.stored_bytes};
 }
 
 Camera torus_camera() {
     return *lit_scene(make_torus(), {}).camera;
 }
 
-Chart torus_chart(const Experiment& experiment, std::span<const std::string> methods,
-                  std::span<const int> slices) {
+namespace {
+
+/// A chart of the error by triangle count, with one curve per method.
+/// \param experiment  its first measurements are those of the methods in order, each on all meshes
+Chart torus_chart(const Experiment& experiment, const std::vector<std::string>& methods,
+                  const std::vector<int>& slices) {
     Chart chart{.id = "triangles",
                 .title = "Error by triangles",
                 .x_label = "triangles",
@@ -249,6 +255,26 @@ Chart torus_chart(const Experiment& experiment, std::span<const std::string> met
         chart.curves.push_back(std::move(curve));
     }
     return chart;
+}
+
+}  // namespace
+
+RenderedExperiment on_tori(Experiment report, const std::string& choice,
+                           const std::vector<TorusMethod>& methods, const std::vector<int>& slices,
+                           const std::function<Scene(int slices)>& smooth, int size) {
+    RenderedExperiment experiment{.report = std::move(report), .size = size};
+    for (const TorusMethod& method : methods) {
+        for (const int one : slices)
+            experiment.methods.push_back(method_on_torus(choice, method, one));
+    }
+    experiment.ground_truth = [=] {
+        return supersampled_reference(smooth(smooth_torus_slices), size, 1);
+    };
+    experiment.finish = [names = names_of(methods), slices](Experiment& finished,
+                                                            const Renderings&) {
+        finished.charts = {torus_chart(finished, names, slices)};
+    };
+    return experiment;
 }
 
 PictureError picture_error(const Image& ground_truth, const Image& picture) {
@@ -286,22 +312,6 @@ Image averaged(const Image& linear, int side) {
         }
     }
     return mean;
-}
-
-Image without_alpha(const Image& image) {
-    Image result{image.width, image.height, 3, image.color_space, {}};
-    std::visit(
-        [&](const auto& samples) {
-            std::decay_t<decltype(samples)> kept;
-            kept.reserve(result.sample_count());
-            const auto channels = static_cast<std::size_t>(image.channels);
-            for (std::size_t i = 0; i < samples.size(); i += channels)
-                kept.insert(kept.end(), samples.begin() + static_cast<std::ptrdiff_t>(i),
-                            samples.begin() + static_cast<std::ptrdiff_t>(i + 3));
-            result.samples = std::move(kept);
-        },
-        image.samples);
-    return result;
 }
 
 }  // namespace relief::accuracy::detail

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -138,20 +137,25 @@ inline constexpr int smooth_torus_slices = 768;
 
 std::size_t torus_triangles(int slices);
 
+/// A way to render the torus with a number of slices.
+struct TorusMethod {
+    std::string name{};
+    std::function<shade::Scene(int slices)> scene{};
+    double stored_bytes = 0.0;
+};
+
 /// A method on a torus, "flat, 576 triangles", whose choices are the method and the number of
 /// triangles.
-RenderedMethod method_on_torus(const std::string& choice, const std::string& method, int slices,
-                               const std::function<shade::Scene(int slices)>& scene);
+RenderedMethod method_on_torus(const std::string& choice, const TorusMethod& method, int slices);
+
+/// An experiment with each method on tori of several numbers of slices, and a chart of the error by
+/// triangle count. The ground truth has one ray through the center of each pixel.
+/// \param smooth  makes the scene of the ground truth, with smooth_torus_slices
+RenderedExperiment on_tori(Experiment report, const std::string& choice,
+                           const std::vector<TorusMethod>& methods, const std::vector<int>& slices,
+                           const std::function<shade::Scene(int slices)>& smooth, int size);
 
 /// The camera at which the smooth torus fills the image.
 shade::Camera torus_camera();
-
-/// A chart of the error by triangle count, with one curve per method.
-///
-/// \param experiment  its first measurements are those of the methods in order, each on all meshes
-///         in the order of `slices`
-/// \throws std::out_of_range if a measurement is missing
-Chart torus_chart(const Experiment& experiment, std::span<const std::string> methods,
-                  std::span<const int> slices);
 
 }  // namespace relief::accuracy::detail

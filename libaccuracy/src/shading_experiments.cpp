@@ -20,16 +20,6 @@ using namespace relief::shade;
 
 namespace {
 
-struct LightingChoice {
-    const char* name;
-    Interpolation interpolation;
-};
-constexpr std::array lighting_choices = {LightingChoice{"flat", Interpolation::flat},
-                                         LightingChoice{"Gouraud", Interpolation::gouraud},
-                                         LightingChoice{"Phong", Interpolation::per_pixel}};
-/// Slices around the circle of the torus; the tube has half as many.
-constexpr std::array lighting_slices = {12, 24, 48, 96, 192};
-
 Scene lit_torus(int around, Interpolation interpolation) {
     Material material = glossy_plastic();
     material.interpolation = interpolation;
@@ -38,46 +28,30 @@ Scene lit_torus(int around, Interpolation interpolation) {
     return scene;
 }
 
-std::vector<RenderedMethod> interpolation_methods() {
-    std::vector<RenderedMethod> methods;
-    for (const LightingChoice& choice : lighting_choices) {
-        for (const int slices : lighting_slices)
-            methods.push_back(method_on_torus("lit", choice.name, slices, [choice](int around) {
-                return lit_torus(around, choice.interpolation);
-            }));
-    }
-    return methods;
-}
-
 PreparedExperiment interpolation_experiment(const PlanOptions& options) {
     const int size = options.is_quick ? 160 : 320;
-    return prepare_rendering(
-        options.device.get(),
-        {.report =
-             {.question = "How many triangles make the error of per-face and per-vertex lighting "
-                          "invisible?",
-              .ground_truth = fmt::format(
-                  "The reference shader in double on a torus of {} triangles with the exact "
-                  "normals, one ray through the center of each pixel. A test verifies that shader "
-                  "by the closed form of a lit sphere.",
-                  torus_triangles(smooth_torus_slices)),
-              .input =
-                  fmt::format("torus with a highlight of shininess 40, {0} x {0} pixels", size)},
-         .size = size,
-         .methods = interpolation_methods(),
-         .ground_truth =
-             [size] {
-                 return supersampled_reference(
-                     lit_torus(smooth_torus_slices, Interpolation::per_pixel), size, 1);
-             },
-         .compared = {"flat, 576 triangles", "Gouraud, 576 triangles", "Phong, 576 triangles",
-                      "Gouraud, 9216 triangles"},
-         .shown = {1, 1 + lighting_slices.size(), 1 + 2 * lighting_slices.size()},
-         .title = "Lighting per face, vertex and pixel",
-         .finish =
-             [](Experiment& report, const Renderings&) {
-                 report.charts = {torus_chart(report, names_of(lighting_choices), lighting_slices)};
-             }});
+    const auto torus = [](Interpolation interpolation) {
+        return [interpolation](int around) { return lit_torus(around, interpolation); };
+    };
+    RenderedExperiment experiment = on_tori(
+        {.question = "How many triangles make the error of per-face and per-vertex lighting "
+                     "invisible?",
+         .ground_truth = fmt::format(
+             "The reference shader in double on a torus of {} triangles with the exact "
+             "normals, one ray through the center of each pixel. A test verifies that shader "
+             "by the closed form of a lit sphere.",
+             torus_triangles(smooth_torus_slices)),
+         .input = fmt::format("torus with a highlight of shininess 40, {0} x {0} pixels", size)},
+        "lit",
+        {{"flat", torus(Interpolation::flat)},
+         {"Gouraud", torus(Interpolation::gouraud)},
+         {"Phong", torus(Interpolation::per_pixel)}},
+        {12, 24, 48, 96, 192}, torus(Interpolation::per_pixel), size);
+    experiment.compared = {"flat, 576 triangles", "Gouraud, 576 triangles", "Phong, 576 triangles",
+                           "Gouraud, 9216 triangles"};
+    experiment.shown = {1, 6, 11};
+    experiment.title = "Lighting per face, vertex and pixel";
+    return prepare_rendering(options.device.get(), std::move(experiment));
 }
 
 /// Reflectance of the metal at normal incidence, in all channels.

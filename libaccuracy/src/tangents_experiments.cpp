@@ -258,17 +258,6 @@ std::vector<TexturedCase> textured_cases() {
 
 namespace {
 
-constexpr std::array rendered_slices = {24, 96, 384};
-constexpr int middle_slices = 96;
-
-struct FrameChoice {
-    const char* name;
-    TangentFrame frame;
-    double stored_bytes;  ///< Per vertex: normal, tangent and w as floats, or only the normal.
-};
-constexpr std::array frame_choices = {FrameChoice{"stored", TangentFrame::stored, 28.0},
-                                      FrameChoice{"derived", TangentFrame::derivatives, 12.0}};
-
 /// Waves of at least a quarter of the map, so that its smaller mip levels lose nothing.
 Image wavy_normals() {
     constexpr int side = 64;
@@ -296,59 +285,41 @@ shade::Scene bumpy_torus(int around, TangentFrame frame) {
     return scene;
 }
 
-std::vector<RenderedMethod> frame_methods() {
-    std::vector<RenderedMethod> all;
-    for (const FrameChoice& choice : frame_choices) {
-        for (const int slices : rendered_slices) {
-            all.push_back(method_on_torus("frames", choice.name, slices, [choice](int around) {
-                return bumpy_torus(around, choice.frame);
-            }));
-            all.back().stored_bytes = choice.stored_bytes;
-        }
-    }
-    RenderedMethod smooth =
-        method_on_torus("frames", "no normal map", middle_slices, [](int around) {
-            shade::Scene scene = bumpy_torus(around, TangentFrame::derivatives);
-            scene.materials.front().normal_map.reset();
-            return scene;
-        });
-    smooth.choices.front().second = "none";
-    smooth.stored_bytes = 12.0;
-    smooth.note = "The time of a frame without a normal map, for comparison.";
-    all.push_back(std::move(smooth));
-    return all;
-}
-
 /// Compares stored frames with frames that shaders derive; only in rendered images do derived
 /// frames cost time.
 PreparedExperiment rendered_frames_experiment(const PlanOptions& options) {
     const int size = options.is_quick ? 160 : 320;
-    return prepare_rendering(
-        options.device.get(),
-        {.report =
-             {.question = "Which tangent frames cost less in rendering: stored ones, or ones that "
-                          "shaders derive?",
-              .ground_truth = fmt::format(
-                  "The reference shader in double on a torus of {} triangles with MikkTSpace's "
-                  "tangents, one ray through the center of each pixel. Tests verify that shader by "
-                  "closed forms.",
-                  torus_triangles(smooth_torus_slices)),
-              .input = fmt::format("torus with a normal map of waves, {0} x {0} pixels", size)},
-         .size = size,
-         .methods = frame_methods(),
-         .ground_truth =
-             [size] {
-                 return supersampled_reference(
-                     bumpy_torus(smooth_torus_slices, TangentFrame::stored), size, 1);
-             },
-         .compared = {"stored, 9216 triangles", "derived, 9216 triangles",
-                      "no normal map, 9216 triangles"},
-         .shown = {0, rendered_slices.size(), 2 * rendered_slices.size()},
-         .title = "A normal map on few triangles",
-         .finish =
-             [](Experiment& report, const Renderings&) {
-                 report.charts = {torus_chart(report, names_of(frame_choices), rendered_slices)};
-             }});
+    const auto torus = [](TangentFrame frame) {
+        return [frame](int around) { return bumpy_torus(around, frame); };
+    };
+    constexpr double normal = 12.0;  // Bytes of a vertex, as floats.
+    RenderedExperiment experiment = on_tori(
+        {.question = "Which tangent frames cost less in rendering: stored ones, or ones that "
+                     "shaders derive?",
+         .ground_truth = fmt::format(
+             "The reference shader in double on a torus of {} triangles with MikkTSpace's "
+             "tangents, one ray through the center of each pixel. Tests verify that shader by "
+             "closed forms.",
+             torus_triangles(smooth_torus_slices)),
+         .input = fmt::format("torus with a normal map of waves, {0} x {0} pixels", size)},
+        "frames",
+        {{"stored", torus(TangentFrame::stored), normal + 16.0},
+         {"derived", torus(TangentFrame::derivatives), normal}},
+        {24, 96, 384}, torus(TangentFrame::stored), size);
+    const auto without_map = [](int around) {
+        shade::Scene scene = bumpy_torus(around, TangentFrame::derivatives);
+        scene.materials.front().normal_map.reset();
+        return scene;
+    };
+    RenderedMethod& smooth = experiment.methods.emplace_back(
+        method_on_torus("frames", {"no normal map", without_map, normal}, 96));
+    smooth.choices.front().second = "none";
+    smooth.note = "The time of a frame without a normal map, for comparison.";
+    experiment.compared = {"stored, 9216 triangles", "derived, 9216 triangles",
+                           "no normal map, 9216 triangles"};
+    experiment.shown = {0, 3, 6};
+    experiment.title = "A normal map on few triangles";
+    return prepare_rendering(options.device.get(), std::move(experiment));
 }
 
 constexpr int cells_of_tangent_tables = 64;  ///< The same number as in docs/tangents.md.

@@ -195,15 +195,5 @@ TEST(Averaged, IsTheMeanOfEachSquare) {
     EXPECT_THROW(averaged(image, 3), InvalidInput);
 }
 
-TEST(WithoutAlpha, KeepsTheColors) {
-    Image image = make_image(2, 1, 4, 8, ColorSpace::srgb);
-    for (std::size_t i = 0; i < 8; ++i)
-        image.as<std::uint8_t>()[i] = static_cast<std::uint8_t>(i);
-    const Image colors = without_alpha(image);
-    EXPECT_EQ(colors.channels, 3);
-    EXPECT_EQ(std::get<std::vector<std::uint8_t>>(colors.samples),
-              (std::vector<std::uint8_t>{0, 1, 2, 4, 5, 6}));
-}
-
 }  // namespace
 }  // namespace relief::test
