@@ -26,24 +26,12 @@ using namespace relief;
 
 constexpr int side = 1024;
 
-Image wave_map() {
-    const std::vector<HeightWave> waves = tiling_waves(side, side, 8, 9, 0.35, 6);
-    const BumpField field = wave_heights(side, side, waves);
+/// The normals of a field in floats.
+Image map_of(const BumpField& field) {
     Image image = make_image(side, side, 3, 32, ColorSpace::data);
     for (std::size_t i = 0; i < image.sample_count(); ++i)
         image.as<float>()[i] = static_cast<float>(field.normals[i / 3][static_cast<int>(i % 3)]);
     return image;
-}
-
-ErrorStats error_of(const Image& exact, const Image& result) {
-    std::vector<float> errors(exact.sample_count() / 3);
-    const auto a = exact.as<float>();
-    const auto b = result.as<float>();
-    for (std::size_t i = 0; i < errors.size(); ++i) {
-        errors[i] = static_cast<float>(degrees_between({a[3 * i], a[3 * i + 1], a[3 * i + 2]},
-                                                       {b[3 * i], b[3 * i + 1], b[3 * i + 2]}));
-    }
-    return error_stats(std::move(errors));
 }
 
 Image normals_of(const Image& image, bool is_middle) {
@@ -78,7 +66,7 @@ std::vector<Contender> contenders(const Image& normals, const Image& codes) {
     return result;
 }
 
-void compare_encoders(const Image& normals) {
+void compare_encoders(const BumpField& field, const Image& normals) {
     const Image codes = encode_normal_map(normals, {.bits = 32});
     const std::vector<Contender> all = contenders(normals, codes);
     std::vector<std::vector<double>> speeds(all.size());
@@ -91,13 +79,13 @@ void compare_encoders(const Image& normals) {
         const Image decoded =
             normals_of(decode_blocks(blocks, all[i].format, side, side), is_signed(all[i].format));
         const TimeStatistics speed = time_statistics(speeds[i]);
-        print_line(all[i].name, error_of(normals, decoded),
+        print_line(all[i].name, normal_error(decoded, field),
                    fmt::format(", {:.1f} MTexel/s (p10 {:.1f}, p90 {:.1f})", speed.median,
                                speed.p10, speed.p90));
     }
     for (const int bits : {8, 16}) {
         const Image map = encode_normal_map(normals, {.bits = bits});
-        print_line(fmt::format("rgb{}", bits), error_of(normals, normals_of(map, false)), "");
+        print_line(fmt::format("rgb{}", bits), normal_error(normals_of(map, false), field), "");
     }
 }
 
@@ -105,15 +93,16 @@ void compare_encoders(const Image& normals) {
 
 int main(int argc, char** argv) try {
     set_thread_limit(1);
-    const Image normals = wave_map();
+    const BumpField field = wave_heights(side, side, tiling_waves(side, side, 8, 9, 0.35, 6));
+    const Image normals = map_of(field);
     if (argc == 3 && std::string(argv[1]) == "write") {
         write_image(argv[2], encode_normal_map(normals, {.bits = 8}));
         return 0;
     }
-    if (argc == 1) compare_encoders(normals);
+    if (argc == 1) compare_encoders(field, normals);
     for (int i = 1; i < argc; ++i) {
         print_line(argv[i],
-                   error_of(normals, normals_of(read_image(argv[i], ImageUse::data), false)), "");
+                   normal_error(normals_of(read_image(argv[i], ImageUse::data), false), field), "");
     }
     return 0;
 } catch (const relief::Error& error) {
