@@ -32,6 +32,18 @@ enum class PackedChannel {
     zero,
 };
 
+}  // namespace tools
+
+template <>
+inline constexpr auto enum_names<tools::PackedChannel> =
+    std::to_array<EnumName<tools::PackedChannel>>({{"occlusion", tools::PackedChannel::occlusion},
+                                                   {"roughness", tools::PackedChannel::roughness},
+                                                   {"smoothness", tools::PackedChannel::smoothness},
+                                                   {"metalness", tools::PackedChannel::metalness},
+                                                   {"nothing", tools::PackedChannel::zero}});
+
+namespace tools {
+
 struct EngineRules {
     Engine engine;
     Green green;              ///< Of normal maps.

@@ -53,22 +53,6 @@ void add_input(CLI::App& app, const std::string& name, std::optional<ChannelInpu
         .group("Maps");
 }
 
-const char* name_of(PackedChannel channel) {
-    switch (channel) {
-        case PackedChannel::occlusion:
-            return "occlusion";
-        case PackedChannel::roughness:
-            return "roughness";
-        case PackedChannel::smoothness:
-            return "smoothness";
-        case PackedChannel::metalness:
-            return "metalness";
-        case PackedChannel::zero:
-            break;
-    }
-    return "nothing";
-}
-
 /// Returns the source of a channel. Maps that are not given are 1, and metalness is 0.
 ChannelSource source_of(const PackContents& request, PackedChannel channel) {
     switch (channel) {
@@ -92,10 +76,10 @@ std::string to_string(const ChannelSource& source) {
     const std::string inverted = source.is_inverted ? "1 - " : "";
     if (const auto* constant = std::get_if<double>(&source.input)) {
         if (source.content == PackedChannel::zero) return "0";
-        return fmt::format("{} {}{:g}", name_of(source.content), inverted, *constant);
+        return fmt::format("{} {}{:g}", enum_name(source.content), inverted, *constant);
     }
     const auto& file = std::get<ChannelFile>(source.input);
-    return fmt::format("{} {}{}{}", name_of(source.content), inverted, file.file.string(),
+    return fmt::format("{} {}{}{}", enum_name(source.content), inverted, file.file.string(),
                        file.channel ? fmt::format(", {}", "rgba"[*file.channel]) : "");
 }
 
@@ -160,7 +144,7 @@ void fill_channel(std::span<Code> codes, std::size_t channel, std::size_t channe
     const std::size_t texels = codes.size() / channels;
     const auto store = [&](std::size_t texel, double value) {
         if (!(value >= 0.0 && value <= 1.0)) {
-            report.add(fmt::format("{} that is not between 0 and 1", name_of(source.content)),
+            report.add(fmt::format("{} that is not between 0 and 1", enum_name(source.content)),
                        "texel", texel, "is written as the nearest of 0 and 1, or as 0");
             value = value > 1.0 ? 1.0 : 0.0;
         }
@@ -284,7 +268,7 @@ ExitCode run_pack(const CLI::App& app, const PackRequest& request) {
     for (std::size_t i = 0; i < packed.sources.size(); ++i) {
         lines.push_back(fmt::format("{}: {}", names.at(i), to_string(packed.sources[i])));
         channels.push_back({{"channel", names.at(i)},
-                            {"content", name_of(packed.sources[i].content)},
+                            {"content", enum_name(packed.sources[i].content)},
                             {"source", to_string(packed.sources[i])}});
     }
     Summary summary;

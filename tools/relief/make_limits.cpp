@@ -43,18 +43,6 @@ std::string text_of(const GrowthStep& step) {
                        step.growth == Growth::triangles ? "triangles" : "size of maps");
 }
 
-const char* growth_name(Growth growth) {
-    switch (growth) {
-        case Growth::triangles:
-            return "triangles";
-        case Growth::size:
-            return "size";
-        case Growth::bits:
-            break;
-    }
-    return "bits";
-}
-
 /// Returns the growth of a kind that is possible.
 std::optional<GrowthStep> possible_step(const LimitAttempt& last, Growth growth,
                                         std::size_t max_triangles) {
@@ -187,7 +175,7 @@ Json limits_json(const LossLimits& limits, const std::vector<LimitAttempt>& atte
                                             : "max_picture_error";
                  }
                  if (attempt.next) {
-                     json["next"] = growth_name(attempt.next->growth);
+                     json["next"] = enum_name(attempt.next->growth);
                      json["factor"] = attempt.next->factor;
                  }
                  return json;

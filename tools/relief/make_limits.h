@@ -12,6 +12,7 @@
 
 #include "common/error_bound.h"
 #include "common/summary.h"
+#include "relief/mesh/enum_names.h"
 #include "relief/shade/fidelity.h"
 
 namespace relief::tools {
@@ -28,6 +29,20 @@ enum class LossLimit { degrees, flip };
 
 /// The quantity that grows in the next asset.
 enum class Growth { triangles, size, bits };
+
+}  // namespace relief::tools
+
+namespace relief {
+
+template <>
+inline constexpr auto enum_names<tools::Growth> =
+    std::to_array<EnumName<tools::Growth>>({{"triangles", tools::Growth::triangles},
+                                            {"size", tools::Growth::size},
+                                            {"bits", tools::Growth::bits}});
+
+}  // namespace relief
+
+namespace relief::tools {
 
 /// The next step of the search.
 struct GrowthStep {

@@ -119,12 +119,6 @@ nlohmann::ordered_json json_of(const std::optional<ComparisonResult>& numbers) {
     return numbers_json(numbers->comparison);
 }
 
-const char* name_of(ComparisonView shown) {
-    return shown == ComparisonView::both   ? "both"
-           : shown == ComparisonView::flip ? "flip"
-                                           : "absolute";
-}
-
 }  // namespace
 
 VariantInputs::VariantInputs(const Scene& scene) : images_(map_images(scene)) {
@@ -277,7 +271,7 @@ nlohmann::ordered_json Comparison::json() const {
     json["left"] = left_label();
     json["right"] = right_label();
     json["split"] = split_;
-    json["shown"] = name_of(shown_);
+    json["shown"] = enum_name(shown_);
     json["working"] = is_working();
     json["error"] = error_;
     json["revision"] = composed_ ? revision_ : 0;

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "picture_comparison.h"
+#include "relief/mesh/enum_names.h"
 #include "view_options.h"
 #include "window/background_jobs.h"
 #include "window/viewer_state.h"
@@ -78,6 +79,20 @@ enum class ComparisonView {
     flip,      ///< The perceived difference.
     absolute,  ///< The largest difference of any channel.
 };
+
+}  // namespace relief::tools
+
+namespace relief {
+
+template <>
+inline constexpr auto enum_names<tools::ComparisonView> =
+    std::to_array<EnumName<tools::ComparisonView>>({{"both", tools::ComparisonView::both},
+                                                    {"flip", tools::ComparisonView::flip},
+                                                    {"absolute", tools::ComparisonView::absolute}});
+
+}  // namespace relief
+
+namespace relief::tools {
 
 /// The parts of a scene that the preparation of a variant reads.
 class VariantInputs {
