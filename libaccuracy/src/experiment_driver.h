@@ -22,7 +22,6 @@ namespace relief::accuracy::detail {
 
 class GlDevice;  // rendered_methods.h
 
-/// The error of a method.
 struct MethodError {
     MethodError(const ErrorStats& statistics, std::string text = {})
         : stats(statistics), note(std::move(text)) {}
@@ -63,7 +62,6 @@ struct MethodOn {
     std::string command{};  ///< Of its own arguments; empty: no tool applies it.
 };
 
-/// The names of methods.
 template <typename Methods>
 std::vector<std::string> names_of(const Methods& methods) {
     std::vector<std::string> names;

@@ -90,7 +90,6 @@ std::span<const BumpMethod> kernel_methods();
 /// The name of a kernel: "sobel3", "gaussian 4".
 std::string name_of(Kernel kernel, int gaussian_radius);
 
-/// The bump options of a method.
 BumpOptions options_of(const BumpMethod& method, BumpOptions options);
 
 /// The unrounded normals of heights, without smoothing of steps.
@@ -377,7 +376,6 @@ std::vector<Sample> samples_of(const TexturedMesh& ground_truth);
 /// Tangent, bitangent and normal as columns.
 glm::dmat3 basis_at(const Mesh& mesh, const TangentFrames& frames, const Sample& sample);
 
-/// The exact basis of the surface.
 glm::dmat3 exact_basis_at(const TexturedMesh& ground_truth, const Sample& sample);
 
 /// The exact tangents of the surface, rounded to float: the best that a method can compute.

@@ -17,7 +17,6 @@ std::uint32_t added_vertex(Mesh& mesh, const glm::vec3& position) {
     return static_cast<std::uint32_t>(mesh.positions.size() - 1);
 }
 
-/// The hard triangle beside the triangle `beside`.
 glm::uvec3 hard_one(Mesh& mesh, const glm::uvec3& beside, HardTriangle kind) {
     const auto& [a, b, c] = std::array{beside.x, beside.y, beside.z};
     constexpr float no_number = std::numeric_limits<float>::quiet_NaN();

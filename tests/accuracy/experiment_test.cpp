@@ -283,7 +283,6 @@ Experiment one_measurement(const ErrorStats& error) {
     return experiment;
 }
 
-/// Adds a chart with one curve.
 void add_curve(Experiment& experiment, const std::string& chart, const std::string& method,
                const std::vector<CurvePoint>& points) {
     experiment.charts.push_back({.id = chart, .curves = {{.method = method, .points = points}}});

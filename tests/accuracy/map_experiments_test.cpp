@@ -135,7 +135,6 @@ TEST(MapErrors, CountZeroVectorsAndRefuseOtherSizes) {
     EXPECT_THROW(map_errors(make_image(4, 4, 3, 16, ColorSpace::data), level), InvalidInput);
 }
 
-/// An image of one gray code.
 Image gray(int code, int size = 32) {
     Image image = make_image(size, size, 3, 8, ColorSpace::srgb);
     for (std::uint8_t& sample : image.as<std::uint8_t>())

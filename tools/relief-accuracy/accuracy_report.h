@@ -62,7 +62,6 @@ class ProcessorUse {
 /// The version of the JSON that is written and read.
 inline constexpr int report_version = 1;
 
-/// The settings of a run.
 struct RunSettings {
     bool quick = false;
     bool timed = true;

@@ -52,7 +52,6 @@ accuracy::RunOptions run_options(const ExperimentOptions& options);
 /// --repeats 3".
 std::string repeated_options(const CLI::App& app);
 
-/// Returns whether tables are printed.
 bool prints_tables(const ExperimentOptions& options);
 
 /// Creates the output folder and sets the number of threads.

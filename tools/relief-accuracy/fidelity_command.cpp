@@ -247,7 +247,6 @@ Summary summary_of(const FidelityRequest& request, const MeasuredChain& chain) {
     return summary;
 }
 
-/// Returns pictures of one height side by side.
 Image side_by_side(const std::array<Image, 3>& pictures) {
     const int width = pictures[0].width;
     Image all = make_image(3 * width, pictures[0].height, 3, 8, ColorSpace::srgb);
