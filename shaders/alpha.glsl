@@ -15,8 +15,8 @@ float alpha_product() {
 }
 
 //@part mask implements alpha
-// Fragments with an alpha below the cutoff, or NaN, are discarded. This is the last step of a shader:
-// after it, the neighbors of a discarded fragment have no derivatives.
+// Fragments with an alpha below the cutoff, or NaN, are discarded. This ends a shader, but for the
+// silhouettes of reliefs: the neighbors of a discarded fragment have no derivatives.
 
 //@include "alpha.glsl#product"
 

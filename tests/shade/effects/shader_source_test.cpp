@@ -232,7 +232,8 @@ TEST(EmbeddedShaders, ComputeDerivativesInUniformControlFlow) {
             std::regex_search(text, std::regex("textureSize\\((?!\\w+, 0\\))[^)\n]*,[^)]*\\)")))
             << shader.name;
         const bool discards = text.find("discard;") != std::string::npos;
-        EXPECT_EQ(discards, shader.name == "alpha.glsl" || shader.name == "overlay.glsl")
+        EXPECT_EQ(discards, shader.name == "alpha.glsl" || shader.name == "height_edge.glsl" ||
+                                shader.name == "overlay.glsl")
             << shader.name;
     }
     EXPECT_GT(lookups, 15U);
@@ -241,7 +242,9 @@ TEST(EmbeddedShaders, ComputeDerivativesInUniformControlFlow) {
             std::find_if(embedded_shaders().begin(), embedded_shaders().end(),
                          [&](const EmbeddedShader& each) { return each.name == main_shader; });
         ASSERT_NE(shader, embedded_shaders().end());
-        EXPECT_TRUE(std::string(shader->text).ends_with("    cut_holes();\n}\n")) << main_shader;
+        EXPECT_TRUE(
+            std::string(shader->text).ends_with("    cut_holes();\n    cut_silhouette();\n}\n"))
+            << main_shader;
     }
 }
 
