@@ -96,6 +96,30 @@ TEST(MistakeOption, SaysWhyAMistakeDoesNotShow) {
                           "normal map in tangent space (--mistake all lists those that show)"));
 }
 
+TEST(MistakeOption, SaysThatTheCameraSeesNoChange) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    workplace.write("card.json", R"({"relief_scene": 1, "ambient": 0.1,
+        "nodes": [{"model": "square.obj", "material": {"diffuse": 0.5, "double_sided": true}}],
+        "lights": [{"type": "directional", "direction": [0.2, -0.3, -1]}]})");
+    const std::string line = "relief-view card.json --size 40x40 --mistake back-faces ";
+    // The front is right whether back faces flip their normals or not; the light is before it.
+    const ProgramResult front = workplace.run(line + "--camera 0,0");
+    ASSERT_EQ(front.exit_code, 0) << front.error;
+    EXPECT_THAT(front.out, HasSubstr("back-faces: changes no pixel that this camera sees, on 1 of "
+                                     "1 surface\n"));
+    const json numbers =
+        json::parse(workplace.run(line + "--camera 0,0 --json").out)["mistakes"][0];
+    EXPECT_TRUE(numbers["shows"]);
+    EXPECT_EQ(numbers["changed_share"], 0.0);
+    EXPECT_EQ(numbers["change"]["flip_mean"], 0.0);
+    // From behind, the wrong normal is that of the lit front.
+    const ProgramResult back = workplace.run(line + "--camera 180,0");
+    ASSERT_EQ(back.exit_code, 0) << back.error;
+    EXPECT_THAT(back.out, HasSubstr("% of the pixels change, normal off by 180 degrees"));
+    EXPECT_THAT(back.out, Not(HasSubstr("changes no pixel")));
+}
+
 TEST(MistakeOption, WritesItsDifference) {
     const Workplace workplace;
     ASSERT_EQ(workplace

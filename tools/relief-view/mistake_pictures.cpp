@@ -126,7 +126,9 @@ DrawnMistake measured_mistake(const Mistake& mistake, const Scene& scene, const 
                               RenderCache& cache, Report& report, MistakeCost* cost) {
     DrawnMistake drawn{&mistake, reach_of(mistake, scene, settings), {}, {}, {}};
     if (!drawn.reach.hidden.empty()) return drawn;
-    MistakeCost found = mistake_cost(mistake, scene, camera, settings, context, cache, report);
+    const Image* const right = cost != nullptr && !cost->right.empty() ? &cost->right : nullptr;
+    MistakeCost found =
+        mistake_cost(mistake, scene, camera, settings, context, cache, report, right);
     drawn.vector = measured_name(mistake, scene);
     drawn.angles = found.angles;
     drawn.change = PictureComparison{found.difference, found.flip, peak_of(found.right)};
@@ -146,15 +148,12 @@ std::vector<DrawnMistake> draw_mistakes(const ViewOptions& options, const FrameS
     RenderCache cache(*context);
     MistakeWriter writer(options);
     std::vector<DrawnMistake> drawn;
-    Report same;  // The first picture has all findings.
-    bool has_findings = false;
+    MistakeCost cost;  // The first one draws the right picture, with all findings.
     for (const Mistake* const mistake : options.mistakes) {
         stages.run("draw", fmt::format("draw {}", mistake->name), [&] {
-            MistakeCost cost;
             drawn.push_back(measured_mistake(*mistake, scene, composed.camera, settings, *context,
-                                             cache, has_findings ? same : report, &cost));
+                                             cache, report, &cost));
             if (drawn.back().change) {
-                has_findings = true;
                 writer.take(cost, *drawn.back().change);
             } else if (!options.all_mistakes) {
                 throw UsageError(fmt::format("--mistake {}: would change nothing, because {}",

@@ -29,7 +29,8 @@ struct DrawnMistake {
 };
 
 /// Measures a mistake in a scene, whether it shows or not.
-/// \param cost  the pictures, if somebody needs them; null
+/// \param cost  gets the pictures, if somebody needs them; null. Its right picture, if it has one
+///         of an earlier mistake, is not drawn again
 /// \throws as mistake_cost() does
 DrawnMistake measured_mistake(const shade::Mistake& mistake, const shade::Scene& scene,
                               const shade::Camera& camera, const shade::FrameSettings& settings,

@@ -85,10 +85,10 @@ ErrorStats angles_between(const Image& right, const Image& wrong) {
 
 MistakeCost mistake_cost(const Mistake& mistake, const Scene& scene, const Camera& camera,
                          const FrameSettings& settings, const Context& context, RenderCache& cache,
-                         Report& report) {
+                         Report& report, const Image* right) {
     const Drawing drawing(camera, context, cache);
     MistakeCost cost;
-    cost.right = drawing.picture(scene, settings, report);
+    cost.right = right != nullptr ? *right : drawing.picture(scene, settings, report);
     FrameSettings mistaken = settings;
     mistaken.shaders = with_mistake(mistake, settings.shaders);
     Report same;

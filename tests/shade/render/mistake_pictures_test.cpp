@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <numbers>
 
@@ -68,6 +69,22 @@ Scene leaning_square(double angle) {
         p = {p.x, p.y * cosine, -p.y * sine};
     mesh.normals.assign(mesh.positions.size(), {0, sine, cosine});
     return scene;
+}
+
+TEST_F(MistakePictures, ComparesWithTheRightPictureThatIsKnown) {
+    const Scene scene = shiny_square();
+    const MistakeCost drawn = cost("gamma-twice", scene);
+    Image black = drawn.right;
+    for (std::uint8_t& sample : black.as<std::uint8_t>())
+        sample = 0;
+    RenderCache cache(context());
+    const MistakeCost found =
+        mistake_cost(*find_mistake("gamma-twice"), scene, test::front_camera(), small(), context(),
+                     cache, IgnoredReport(), &black);
+    EXPECT_EQ(found.right.samples, black.samples);
+    EXPECT_EQ(found.wrong.samples, drawn.wrong.samples);
+    EXPECT_EQ(found.difference.differing_pixels, compare(black, drawn.wrong).differing_pixels);
+    EXPECT_NE(found.flip.mean, drawn.flip.mean);
 }
 
 TEST_F(MistakePictures, NormalMatrixOfALeaningPlane) {

@@ -101,10 +101,11 @@ struct MistakeCost {
 ///
 /// \param settings  those of the picture without the mistake
 /// \param report    gets the findings of the right picture
+/// \param right     the picture without the mistake; null: it is drawn
 /// \throws as Renderer does; GpuError as with_mistake() does
 MistakeCost mistake_cost(const Mistake& mistake, const Scene& scene, const Camera& camera,
                          const FrameSettings& settings, const Context& context, RenderCache& cache,
-                         Report& report = IgnoredReport());
+                         Report& report = IgnoredReport(), const Image* right = nullptr);
 
 }  // namespace shade
 }  // namespace relief
