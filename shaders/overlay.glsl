@@ -39,12 +39,15 @@ uniform vec3 all_color;
 void pass_overlay_color() { overlay_color = all_color; }
 
 //@part vertex_color implements overlay_color
-// Each vertex has its own color.
+// Each vertex has its own color, and is a point of 9 pixels where shaders say so (WebGL; marker_pixels).
 
 in vec4 color_linear;
 out vec3 overlay_color;
 
-void pass_overlay_color() { overlay_color = color_linear.rgb; }
+void pass_overlay_color() {
+    overlay_color = color_linear.rgb;
+    gl_PointSize = 9.0;
+}
 
 //@part disc implements shape
 // The square of a point is cut to a disc.

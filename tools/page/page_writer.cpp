@@ -10,6 +10,7 @@
 #include "common/html.h"
 #include "common/text.h"
 #include "short_script.h"
+#include "webgl_constants.h"
 #include "zlib_stream.h"
 
 namespace relief::tools {
@@ -27,6 +28,7 @@ Json json_of(const PageTexture& t) {
             {"maxima", t.has_maxima},
             {"gray", t.is_gray},
             {"c", t.channels},
+            {"image", t.image},
             {"w", t.width},
             {"h", t.height},
             {"d", t.section}};
@@ -74,6 +76,8 @@ Json json_of(const PageDraw& d) {
                  {"morphTexels", {d.morph_texels.x, d.morph_texels.y}}};
     if (d.shadow_program) json["shadowProgram"] = *d.shadow_program;
     if (d.rows.empty()) json["rows"] = Json::object();
+    if (d.overlay_program) json["overlay"] = *d.overlay_program;
+    if (d.hides_overlays) json["hides"] = true;
     return json;
 }
 
@@ -83,16 +87,30 @@ Json json_of(const PageScreenPass& pass) {
     return json;
 }
 
+Json json_of(const PageOverlay& o) {
+    return {{"kind", enum_name(o.kind)},
+            {"program", o.program},
+            {"mesh", o.mesh},
+            {"count", o.count},
+            {"color", {o.color_srgb.r, o.color_srgb.g, o.color_srgb.b}},
+            {"origin", {o.origin.x, o.origin.y, o.origin.z}},
+            {"instance", or_null(o.instance)}};
+}
+
 Json json_of(const PagePicture& p, const PagePictureName& name) {
     Json draws = Json::array();
     for (const PageDraw& draw : p.draws)
         draws.push_back(json_of(draw));
+    Json overlays = Json::array();
+    for (const PageOverlay& overlay : p.overlays)
+        overlays.push_back(json_of(overlay));
     return {{"view", name.view},
             {"variant", name.variant},
             {"step", or_null(name.step)},
             {"left", or_null(name.left)},
             {"scene", name.scene},
             {"draws", draws},
+            {"overlays", overlays},
             {"skybox", p.skybox ? json_of(*p.skybox) : Json()},
             {"finishing", p.finishing ? json_of(*p.finishing) : Json()},
             {"samples", p.samples},
@@ -178,7 +196,7 @@ std::string page_script() {
     for (const PagePart& each : page_parts()) {
         if (each.name.ends_with(".js")) script += each.text;
     }
-    return "(()=>{'use strict';" + short_script(script) + "})()";
+    return "(()=>{'use strict';" + short_script(script, webgl_constants) + "})()";
 }
 
 std::string page_frame(const std::string& title, const std::string& data) {

@@ -192,12 +192,18 @@ class Piece {
     explicit Piece(std::span<Token> tokens) : tokens_(tokens) {
         for (std::size_t i = 0; i < tokens.size(); ++i) {
             const Token& token = tokens_[i];
+            if (token.closes() && !open_.empty()) {
+                open_.pop_back();
+                choices_.pop_back();
+            }
             if (token.opens()) {
                 add_pattern(i);
                 open_.push_back(i);
-            } else if (token.closes() && !open_.empty()) {
-                open_.pop_back();
+                choices_.push_back(0);
             }
+            if (token.is("?") && !is(i - 1, "?") && !is(i + 1, "?") && !is(i + 1, "."))
+                ++choices_.back();
+            if (token.is(":") && choices_.back() > 0) --choices_.back();
             if (token.kind == TokenKind::word) add_word(i);
         }
     }
@@ -227,9 +233,9 @@ class Piece {
         return i < tokens_.size() && tokens_[i].is(text);
     }
 
-    /// A property follows a dot, but not three of them.
+    /// A property follows a dot, but not three of them, or is a key before a colon.
     [[nodiscard]] bool is_property(std::size_t i) const {
-        return is(i - 1, ".") && !is(i - 2, ".");
+        return (is(i - 1, ".") && !is(i - 2, ".")) || keys_.contains(i);
     }
 
     /// Declares the parameters in parentheses, or the variables of an array.
@@ -273,9 +279,10 @@ class Piece {
         const bool is_method_name = is(i + 1, "(") && !is(i - 1, "function") && !is(i - 1, "*") &&
                                     is_method(i + 1, closing(tokens_, i + 1));
         const bool is_in_braces = !open_.empty() && is(open_.back(), "{");
-        const bool is_key = is(i + 1, ":") || (is_in_braces && (is(i - 1, "{") || is(i - 1, ",")) &&
-                                               (is(i + 1, ",") || is(i + 1, "}") || is_assigned));
-        if (!is_property(i) && (is_key || is_method_name)) kept_.insert(word);
+        if (is(i + 1, ":") && choices_.back() == 0) keys_.insert(i);
+        const bool is_short_key = is_in_braces && (is(i - 1, "{") || is(i - 1, ",")) &&
+                                  (is(i + 1, ",") || is(i + 1, "}") || is_assigned);
+        if (!is_property(i) && (is_short_key || is_method_name)) kept_.insert(word);
     }
 
     /// Tells whether a word after a comma is declared as in `const a = 1, b = 2`.
@@ -291,6 +298,8 @@ class Piece {
 
     std::span<Token> tokens_;
     std::vector<std::size_t> open_;
+    std::vector<int> choices_{0};  ///< Question marks without a colon, in each open bracket.
+    std::set<std::size_t> keys_;   ///< The places of keys.
     std::set<std::string> declared_;
     std::set<std::string> kept_;
 };
@@ -390,10 +399,31 @@ void shorten_names(Tokens& tokens) {
     }
 }
 
+void replace_constants(Tokens& tokens, std::span<const ScriptConstant> constants) {
+    Tokens result;
+    for (Token& token : tokens) {
+        const std::size_t count = result.size();
+        const bool is_constant = count >= 2 && result[count - 1].is(".") &&
+                                 result[count - 2].is("gl") &&
+                                 !(count >= 3 && result[count - 3].is("."));
+        const auto known = std::find_if(constants.begin(), constants.end(),
+                                        [&](const auto& each) { return token.is(each.name); });
+        if (!is_constant || known == constants.end()) {
+            result.push_back(std::move(token));
+            continue;
+        }
+        result.pop_back();
+        result.back() = {TokenKind::number, std::to_string(known->value),
+                         result.back().after_space};
+    }
+    tokens = std::move(result);
+}
+
 }  // namespace
 
-std::string short_script(std::string_view script) {
+std::string short_script(std::string_view script, std::span<const ScriptConstant> constants) {
     Tokens tokens = Reader(script).tokens();
+    replace_constants(tokens, constants);
     shorten_names(tokens);
     std::string result;
     for (const Token& token : tokens) {

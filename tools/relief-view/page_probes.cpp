@@ -20,6 +20,10 @@ Json json_of(const glm::dvec3& v) {
     return {v.x, v.y, v.z};
 }
 
+Json json_of(const glm::dvec2& v) {
+    return {v.x, v.y};
+}
+
 /// Returns for example "n", or "l2" for the second light of several.
 std::string label_of(const ProbeLayer& layer, const ProbeVector& vector) {
     return vector.light && layer.lights.size() > 1
@@ -73,6 +77,21 @@ Json lobe_json(const Probe& probe, const ProbeLayer& layer) {
     return {{"axis", json_of(z)}, {"shares", std::move(shares)}};
 }
 
+/// The pixel in each texture: the place, and the ways to the pixel on the right and to the one
+/// below, as shares of the texture. Without the lookups whose footprint is unknown.
+Json lookups_json(const ProbeLayer& layer, const Scene& scene) {
+    Json list = Json::array();
+    for (const ProbeLookup& lookup : layer.lookups) {
+        if (!lookup.texels_right || !lookup.texels_down) continue;
+        const glm::dvec2 size(lookup.size);
+        list.push_back({{"image", scene.images[lookup.image].name},
+                        {"at", json_of(lookup.texel / size)},
+                        {"right", json_of(*lookup.texels_right / size)},
+                        {"down", json_of(*lookup.texels_down / size)}});
+    }
+    return list;
+}
+
 std::string text_of(const ProbedPixel& pixel, const Scene& scene) {
     std::string text;
     for (const ProbeSection& section : probe_sections(pixel, scene)) {
@@ -112,6 +131,7 @@ Json page_probe_json(const ProbedPixel& pixel, const Scene& scene) {
             {"at", json_of(layer->position_world)},
             {"vectors", vectors_json(*layer)},
             {"lobe", lobe_json(probe, *layer)},
+            {"lookups", lookups_json(*layer, scene)},
             {"text", text_of(pixel, scene)},
             {"terms", terms},
             {"radiance", json_of(probe.radiance)},

@@ -233,9 +233,10 @@ std::size_t PageContent::map(GLuint name) {
     std::array<GLint, 4> swizzle{};
     gl->GetTexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_RGBA, swizzle.data());
     texture.is_gray = samples.channels <= 2 && swizzle[1] == GL_RED;
-    if (const auto image = images_.find(name);
-        image != images_.end() && samples.texels == PageTexels::bits_8) {
-        std::vector<std::byte> file = file_of(*image->second);
+    if (const auto image = images_.find(name); image != images_.end()) {
+        texture.image = image->second->name;
+        std::vector<std::byte> file;
+        if (samples.texels == PageTexels::bits_8) file = file_of(*image->second);
         if (is_same_in_browsers(file)) {
             texture.texels = PageTexels::encoded;
             texture.section = section(std::move(file));
@@ -374,7 +375,7 @@ std::size_t PageContent::mesh(const gl::LinkedProgram& program) {
     }
     GLint triangles = 0;
     gl->GetIntegerv(GL_ELEMENT_ARRAY_BUFFER_BINDING, &triangles);
-    mesh.triangles = stored_buffer(static_cast<GLuint>(triangles));
+    mesh.triangles = triangles == 0 ? section({}) : stored_buffer(static_cast<GLuint>(triangles));
     gl.check("reading a mesh for a page");
     return meshes_.add(description.meshes, std::move(mesh));
 }

@@ -110,6 +110,17 @@ void report_large_textures(const PageDescription& page, Report& report) {
     }
 }
 
+/// Adds the edges of triangles after the grid.
+void add_wireframe(PagePicture& picture) {
+    PageOverlay wireframe;
+    wireframe.kind = PageOverlay::Kind::wireframe;
+    wireframe.color_srgb = wireframe_color;
+    const auto after_grid =
+        std::find_if(picture.overlays.begin(), picture.overlays.end(),
+                     [](const PageOverlay& each) { return each.kind != PageOverlay::Kind::grid; });
+    picture.overlays.insert(after_grid, wireframe);
+}
+
 }  // namespace
 
 struct PageRecorder::Implementation {
@@ -123,6 +134,8 @@ struct PageRecorder::Implementation {
                                          OutputCoding coding, bool shows_samples);
     PageScreenPass finishing(const Scene& scene, const PreparedScene& of,
                              const FrameSettings& settings, bool shows_samples);
+
+    void record_overlays(const PreparedScene& of, PagePicture& picture);
 
     const Context& context;
     RenderCache cache;
@@ -251,6 +264,37 @@ PageScreenPass PageRecorder::Implementation::finishing(const Scene& scene, const
     return pass;
 }
 
+void PageRecorder::Implementation::record_overlays(const PreparedScene& of, PagePicture& picture) {
+    if (!of.overlays) return;
+    const auto program = [&](const ShaderSteps& steps) {
+        return content.program(screen_program(of, "overlay", steps), texts_of(of));
+    };
+    for (std::size_t i = 0; i < of.draws.size(); ++i) {
+        const Features& f = of.draws[i].features;
+        picture.draws[i].overlay_program =
+            program(overlay_steps("overlay.glsl#one_color", f.morphing, f.skinning));
+        picture.draws[i].hides_overlays = f.alpha == AlphaMode::opaque;
+    }
+    for (const OverlayLines& lines : of.overlays->lines()) {
+        ShaderSteps steps = overlay_steps(
+            lines.instance ? "overlay.glsl#vertex_color" : "overlay.glsl#one_color", false, false);
+        if (lines.instance) choose_part(steps, "overlay.glsl#disc");
+        PageOverlay overlay;
+        overlay.kind = lines.instance     ? PageOverlay::Kind::markers
+                       : lines.are_frames ? PageOverlay::Kind::frames
+                                          : PageOverlay::Kind::grid;
+        overlay.program = program(steps);
+        of.api->BindVertexArray(lines.vertices->name());
+        overlay.mesh = content.mesh(*of.linked.get("overlay", steps));
+        of.api->BindVertexArray(0);
+        overlay.count = static_cast<std::size_t>(lines.count);
+        overlay.color_srgb = lines.color_srgb;
+        overlay.origin = lines.origin;
+        overlay.instance = lines.instance;
+        picture.overlays.push_back(overlay);
+    }
+}
+
 PageRecorder::PageRecorder(const Context& context)
     : implementation_(std::make_unique<Implementation>(context)) {}
 
@@ -280,6 +324,8 @@ void PageRecorder::add(const SceneGraph& graph, const FramePlan& plan,
     if (!finishes) picture.clear_color = clear_color(scene.background, settings.output);
     for (const Draw& draw : renderer.draws)
         picture.draws.push_back(self.record(renderer, draw, shows_samples));
+    self.record_overlays(renderer, picture);
+    if (settings.overlays.wireframe) add_wireframe(picture);
     renderer.api.check("recording a page");
     if (self.content.description.pictures.empty())
         report_large_textures(self.content.description, report);

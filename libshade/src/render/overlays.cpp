@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <utility>
 
 #include "relief/mesh/image.h"
 #include "relief/mesh/report.h"
@@ -46,13 +47,13 @@ void check_frame_length(const std::optional<float>& share) {
                     *share));
 }
 
-ShaderSteps overlay_steps(const char* color, bool morphing, bool skinning) {
+}  // namespace
+
+ShaderSteps detail::overlay_steps(const char* color, bool morphing, bool skinning) {
     ShaderSteps steps = pose_steps(morphing, skinning);
     choose_part(steps, color);
     return steps;
 }
-
-}  // namespace
 
 Grid grid_below(const Bounds& world) {
     Grid grid;
@@ -278,41 +279,46 @@ void OverlayDrawing::draw_wires(const glm::dmat4& clip_from_world,
     gl->PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
 }
 
-void OverlayDrawing::draw_lines(const Points& lines, const glm::vec3& color,
-                                const glm::mat4& clip_from_lines) const {
-    if (lines.count == 0) return;
-    use_lines(color)->set("clip_from_object", clip_from_lines);
-    (*api_)->BindVertexArray(lines.vertices.name());
+std::vector<OverlayLines> OverlayDrawing::lines() const {
+    std::vector<OverlayLines> all;
+    const auto add = [&](const Points& points, const glm::vec3& color, const glm::dvec3& origin,
+                         bool are_frames) {
+        if (points.count > 0)
+            all.push_back({&points.vertices, points.count, color, origin, are_frames, {}});
+    };
+    const std::array<glm::vec3, 3> colors = {tangent_color, bitangent_color, normal_color};
+    if (overlays_.grid) {
+        add(cells_, grid_color, overlays_.grid->middle, false);
+        // At equal depth, the last line is in front.
+        for (std::size_t i = 0; i < axes_.size(); ++i)
+            add(axes_[i], colors[i], overlays_.grid->middle, false);
+    }
+    for (std::size_t i = 0; i < frames_.size() && overlays_.vertex_frames; ++i)
+        add(frames_[i], colors[i], center_, true);
+    for (const auto& [instance, points] : markers_)
+        all.push_back({&points.vertices, points.count, {}, {}, false, instance});
+    return all;
+}
+
+void OverlayDrawing::draw_lines(const OverlayLines& lines,
+                                const glm::dmat4& clip_from_world) const {
+    use_lines(lines.color_srgb)
+        ->set("clip_from_object", glm::mat4(glm::translate(clip_from_world, lines.origin)));
+    (*api_)->BindVertexArray(lines.vertices->name());
     (*api_)->DrawArrays(GL_LINES, 0, lines.count);
 }
 
-void OverlayDrawing::draw_grid(const glm::dmat4& clip_from_world) const {
-    const glm::mat4 clip_from_grid(glm::translate(clip_from_world, overlays_.grid->middle));
-    draw_lines(cells_, grid_color, clip_from_grid);
-    // At equal depth, the last line is in front.
-    draw_lines(axes_[0], tangent_color, clip_from_grid);
-    draw_lines(axes_[1], bitangent_color, clip_from_grid);
-    draw_lines(axes_[2], normal_color, clip_from_grid);
-}
-
-void OverlayDrawing::draw_frames(const glm::dmat4& clip_from_world) const {
-    const glm::mat4 clip_from_frames(glm::translate(clip_from_world, center_));
-    const std::array<glm::vec3, 3> colors = {tangent_color, bitangent_color, normal_color};
-    for (std::size_t i = 0; i < frames_.size(); ++i)
-        draw_lines(frames_[i], colors[i], clip_from_frames);
-}
-
-void OverlayDrawing::draw_markers(const glm::dmat4& clip_from_world) const {
+void OverlayDrawing::draw_discs(const OverlayLines& discs,
+                                const glm::dmat4& clip_from_world) const {
     const gl::Api& gl = *api_;
     discs_program_->use();
+    discs_program_->set(
+        "clip_from_object",
+        glm::mat4(clip_from_world * glm::dmat4(world_from_object_[*discs.instance])));
     gl->Disable(GL_DEPTH_TEST);
     gl->PointSize(static_cast<float>(marker_pixels));
-    for (const auto& [instance, points] : markers_) {
-        discs_program_->set("clip_from_object",
-                            glm::mat4(clip_from_world * glm::dmat4(world_from_object_[instance])));
-        gl->BindVertexArray(points.vertices.name());
-        gl->DrawArrays(GL_POINTS, 0, points.count);
-    }
+    gl->BindVertexArray(discs.vertices->name());
+    gl->DrawArrays(GL_POINTS, 0, discs.count);
     gl->Enable(GL_DEPTH_TEST);
 }
 
@@ -328,10 +334,19 @@ void OverlayDrawing::draw(const glm::dmat4& clip_from_world,
     gl->CullFace(GL_BACK);
     if (overlays_.wireframe || overlays_.vertex_frames || overlays_.grid)
         draw_depth(clip_from_world, surfaces);
-    if (overlays_.grid) draw_grid(clip_from_world);
-    if (overlays_.wireframe) draw_wires(clip_from_world, surfaces);
-    if (overlays_.vertex_frames) draw_frames(clip_from_world);
-    if (overlays_.markers) draw_markers(clip_from_world);
+    bool has_wires = !overlays_.wireframe;  // They are drawn after the grid.
+    const auto draw_wires_once = [&] {
+        if (!std::exchange(has_wires, true)) draw_wires(clip_from_world, surfaces);
+    };
+    for (const OverlayLines& each : lines()) {
+        if (each.are_frames || each.instance) draw_wires_once();
+        if (each.instance) {
+            draw_discs(each, clip_from_world);
+        } else {
+            draw_lines(each, clip_from_world);
+        }
+    }
+    draw_wires_once();
     gl->Finish();
 }
 

@@ -7,10 +7,12 @@
 #include <array>
 #include <glm/glm.hpp>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <vector>
 
+#include "effects/shader_source.h"
 #include "relief/mesh/mesh.h"
 #include "relief/mesh/report.h"
 #include "relief/shade/effects.h"
@@ -56,6 +58,21 @@ struct OverlaySurface {
     const GpuPose* pose = nullptr;  ///< Only with one of the two.
 };
 
+/// Returns the steps of the program of overlays (shaders/overlay.glsl).
+/// \param color  the part of the step overlay_color
+ShaderSteps overlay_steps(const char* color, bool morphing, bool skinning);
+
+/// What overlays draw beside the edges of surfaces: lines of one color in world space, or discs on
+/// an instance, which have colors of their own.
+struct OverlayLines {
+    const gl::VertexArray* vertices = nullptr;
+    GLsizei count = 0;
+    glm::vec3 color_srgb{0.0F};           ///< Of lines.
+    glm::dvec3 origin{0.0};               ///< Of the positions of lines, in world space.
+    bool are_frames = false;              ///< They move with the vertices.
+    std::optional<std::size_t> instance;  ///< Of discs.
+};
+
 /// Draws the overlays. The finished picture has no depth buffer, so the depth of the surfaces is
 /// drawn again. Hence overlays are the same for any number of samples.
 class OverlayDrawing {
@@ -66,6 +83,9 @@ class OverlayDrawing {
 
     /// Updates the matrices of the instances.
     void move(const Scene& scene);
+
+    /// Returns all lines and discs, in the order in which they are drawn.
+    [[nodiscard]] std::vector<OverlayLines> lines() const;
 
     /// Draws into the bound target and overwrites its depth.
     void draw(const glm::dmat4& clip_from_world, std::span<const OverlaySurface> surfaces) const;
@@ -95,11 +115,8 @@ class OverlayDrawing {
                     std::span<const OverlaySurface> surfaces) const;
     void draw_wires(const glm::dmat4& clip_from_world,
                     std::span<const OverlaySurface> surfaces) const;
-    void draw_lines(const Points& lines, const glm::vec3& color,
-                    const glm::mat4& clip_from_lines) const;
-    void draw_frames(const glm::dmat4& clip_from_world) const;
-    void draw_grid(const glm::dmat4& clip_from_world) const;
-    void draw_markers(const glm::dmat4& clip_from_world) const;
+    void draw_lines(const OverlayLines& lines, const glm::dmat4& clip_from_world) const;
+    void draw_discs(const OverlayLines& discs, const glm::dmat4& clip_from_world) const;
 
     const gl::Api* api_;
     Overlays overlays_;

@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
+
+#include "webgl_constants.h"
 
 namespace relief::tools {
 namespace {
@@ -32,19 +35,28 @@ TEST(ShortScript, RenamesWhatAPieceDeclares) {
 }
 
 TEST(ShortScript, KeepsKeysMethodsAndProperties) {
-    // `width` is a key that a short form takes, `size` a method, and `a` a name of its own. `kept`
-    // is before a colon, as keys are.
+    // `width` and `depth` are short keys, `size` is a method, and `a` a name of its own.
     EXPECT_EQ(
         short_script(
             "class Box {\n  size(scale, {depth}) {\n    const {width} = this.data, all = [scale, "
             "width], kept = a;\n    return scale > 1 ? kept : f({size: a, scale: all.scale}, "
             "...all);\n  }\n}\nnew Box().size(2);\n"),
-        "class Aa{size(scale,{depth}){const{width}=this.data,b=[scale,width],kept=a;"
-        "return scale>1?kept:f({size:a,scale:b.scale},...b);}}new Aa().size(2);");
+        "class Aa{size(c,{depth}){const{width}=this.data,b=[c,width],d=a;"
+        "return c>1?d:f({size:a,scale:b.scale},...b);}}new Aa().size(2);");
+    EXPECT_EQ(
+        short_script("function g(p, q) {\n  const y = p;\n  return f({x: `${p}, ${q}`, y});\n}\n"),
+        "function g(a,b){const y=a;return f({x:`${a}, ${b}`,y});}");
     EXPECT_EQ(short_script(
                   "const code = 1, light = code;\nfunction* f(light) {\n  for (const [at, more] of "
                   "light) yield at + more + code;\n}\n"),
               "const Aa=1,Ab=Aa;function*f(Ab){for(const[a,b]of Ab)yield a+b+Aa;}");
+}
+
+TEST(ShortScript, ReplacesConstants) {
+    const std::vector<ScriptConstant> constants = {{"LINES", 1}, {"TEXTURE_2D", 0xde1}};
+    EXPECT_EQ(short_script("draw(gl.LINES, gl.TEXTURE_2D, gl.OTHER, a.gl.LINES);", constants),
+              "draw(1,3553,gl.OTHER,a.gl.LINES);");
+    EXPECT_EQ(short_script("f(gl.FLOAT, gl.RGB9_E5);", webgl_constants), "f(5126,35901);");
 }
 
 TEST(ShortStyle, HasNoCommentsAndNeedlessSpaces) {

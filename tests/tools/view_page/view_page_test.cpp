@@ -105,8 +105,8 @@ TEST(ViewPage, RefusesWhatAPageDoesNotHave) {
     const Workplace workplace;
     const std::string page = "relief-view data/vase.obj --output out/p.html ";
     for (const char* option :
-         {"--turntable 4", "--wireframe", "--grid", "--benchmark 3",
-          "--compare map=none --difference-map out/d.png", "--reference data/bricks-diffuse.png"}) {
+         {"--turntable 4", "--benchmark 3", "--compare map=none --difference-map out/d.png",
+          "--reference data/bricks-diffuse.png"}) {
         const ProgramResult result = workplace.run(page + option);
         EXPECT_EQ(result.exit_code, 2) << option;
         EXPECT_THAT(result.error, HasSubstr("applies to pictures, not to pages")) << option;

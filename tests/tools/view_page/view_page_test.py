@@ -12,6 +12,7 @@ import html
 import json
 import os
 import pathlib
+import re
 import struct
 import subprocess
 import sys
@@ -276,6 +277,37 @@ class ViewPage(PageTest):
                                     page_options=["--page-quantize"])
         self.assertLess(difference["flip_mean"], MAX_FLIP)
 
+    def lost_pixels(self, a, b):
+        """Pixels of a whose color, and nothing near it, is in b within a pixel."""
+        width, height = SIZE
+        lost = 0
+        for y in range(height):
+            for x in range(width):
+                at = 4 * (width * y + x)
+                near = (4 * (width * row + column) for row in range(max(y - 1, 0), min(y + 2, height))
+                        for column in range(max(x - 1, 0), min(x + 2, width)))
+                lost += a[at:at + 3] != b[at:at + 3] and all(
+                    max(abs(a[at + k] - b[other + k]) for k in range(3)) > 16 for other in near)
+        return lost
+
+    def test_draws_overlays(self):
+        # OpenGL lets a line take neighboring pixels, and the two rasterizers choose others.
+        vase = "data/vase.obj --samples 1"
+        for options, kinds in (("--wireframe", ["wireframe"]), ("--grid --camera 200,40", ["grid"] * 4),
+                               ("--vertex-frames --frame-length 0.02", ["frames"] * 3),
+                               ("--grid --wireframe --health-markers all", ["grid"] * 4 + ["wireframe", "markers"])):
+            difference = pages.compared(TOOL, self.window, [*vase.split(), *options.split()], self.work / "case", *SIZE)
+            self.assertEqual(self.run_in("return page.page.pictures[0].overlays.map((o) => o.kind)"), kinds)
+            picture, drawn = pages.read_png(self.work / "case/picture.png"), pages.read_png(self.work / "case/page.png")
+            lost = [self.lost_pixels(picture, drawn), self.lost_pixels(drawn, picture)]
+            print(f"{difference['max']:5.0f} {difference['flip_mean']:9.5f} {lost}  {options}", flush=True)
+            self.assertLess(max(lost), 0.003 * SIZE[0] * SIZE[1], options)
+            self.assertLess(difference["flip_mean"], 0.08, options)
+            # They are seen, and are part of the picture of a moved camera, too.
+            self.run_in("page.page.pictures[0].overlays = []")
+            plain = self.pixels(*SIZE)
+            self.assertGreater(sum(plain[i:i + 3] != drawn[i:i + 3] for i in range(0, len(drawn), 4)), 100, options)
+
     def test_stores_normal_maps_in_less_space(self):
         # Heights whose left and right borders differ, so that they continue beyond these.
         width, height = 64, 48
@@ -330,6 +362,14 @@ class ViewPage(PageTest):
             self.assertEqual(self.run_in("return JSON.stringify(page.camera)"), before)
             self.assertEqual(self.window.run("return document.getAnimations().length"), 0)
         self.window.devtools("Emulation.setEmulatedMedia", features=[])
+
+    def test_has_the_numbers_of_constants(self):
+        header = pathlib.Path(__file__).resolve().parents[3] / "tools/page/webgl_constants.h"
+        rows = re.findall(r'\{"(\w+)", (\w+)\}', header.read_text())
+        self.assertGreater(len(rows), 70)
+        self.page("constants.html", "data/vase.obj", "--size", "64x64")
+        for name, value in rows:
+            self.assertEqual(self.run_in("return page.painter.gl[arguments[0]]", name), int(value, 16), name)
 
     def test_says_what_is_missing(self):
         file = self.work / "missing.html"
@@ -442,6 +482,30 @@ class LessonPage(PageTest):
             del os.environ["RELIEF_SHADER_DIR"]
         self.assertEqual(self.pixels(), darker)
 
+    def check_footprints(self, drawn):
+        """A chosen pixel shows its textures, with a cross at the place of the lookup."""
+        self.run_in("page.probes.choose(page.probes.probes.find((p) => p.lookups.length === 2))")
+        self.window.wait_for(f"return {pages.ROOT}.relief.part('lookups').children.length === 2")
+        probe = self.run_in("return page.probes.chosen")
+        places = re.findall(r"texel \(([-\d.]+), ([-\d.]+)\) of (\d+) x (\d+), linear, footprint ([\d.]+) x ([\d.]+)", probe["text"])
+        self.assertEqual(len(places), 2)
+        for i, (lookup, place) in enumerate(zip(probe["lookups"], places)):
+            x, y, width, height, longer, shorter = map(float, place)
+            self.assertAlmostEqual(lookup["at"][0] * width, x, delta=0.006)
+            self.assertAlmostEqual(lookup["at"][1] * height, y, delta=0.006)
+            right, down = ([value * side for value, side in zip(lookup[way], (width, height))] for way in ("right", "down"))
+            # The axes of an ellipse span the area of its conjugate radii.
+            area = abs(right[0] * down[1] - right[1] * down[0])
+            self.assertAlmostEqual(area, longer * shorter, delta=0.02 * area)
+            ink = self.run_in("const canvas = page.part('lookups').children[arguments[0]], at = page.probes.chosen.lookups[arguments[0]].at;"
+                              "const [x, y] = at.map((v, k) => Math.floor((v - Math.floor(v)) * [canvas.width, canvas.height][k]));"
+                              "return [canvas.width, canvas.height, ...canvas.getContext('2d').getImageData(x, y, 1, 1).data]", i)
+            self.assertEqual(ink, [width, height, 255, 220, 60, 255])
+        # What the page draws stays the same.
+        self.run_in("page.probes.choose(null)")
+        self.assertTrue(self.run_in("return page.part('lookups').hidden || new Promise((done) => setTimeout(() => done(page.part('lookups').hidden), 100))"))
+        self.assertEqual(self.pixels(*SIZE), drawn)
+
     def test_explains_pixels(self):
         for scene in ("data/vase.obj --height-map data/bricks-height.png", "data/vase.obj --material gold",
                       "data/scenes/illumination.json"):
@@ -459,6 +523,8 @@ class LessonPage(PageTest):
                 self.assertEqual(is_edge, "--height-map" in scene)
                 if not is_edge:
                     self.assertLessEqual(max(abs(drawn[at + k] - probe["codes"][k]) for k in range(4)), 1)
+            if "bricks" in scene:
+                self.check_footprints(drawn)
         self.assertFalse(self.run_in("return page.part('explain').hidden"))
         self.run_in("page.part('explain').click()")
         text = self.run_in("return page.part('probe').textContent")

@@ -43,6 +43,11 @@ class Data {
     return {width, height, samples};
   }
 
+  // The largest level, as four samples per texel.
+  async image(gl, texture) {
+    return texture.t === 'encoded' ? this.decoded(gl, texture) : this.spread(texture);
+  }
+
   // Samples from their differences to the left (tools/page/page_images.cpp).
   samples({t, w, h, c, d, packed}) {
     const bytes = this.section(d), count = w * h * c, isWide = t === 'bits_16';

@@ -6,15 +6,12 @@ class Scene {
   constructor(data, scene) {
     this.data = data;
     Object.assign(this, scene);
-    this.duration = scene.duration;
-    this.time = scene.time;
     this.keys = scene.animations.filter((a) => a.channels);
     for (const animation of this.keys)
       for (const channel of animation.channels) {
         channel.times = data.floats(channel.times);
         channel.values = data.floats(channel.values);
       }
-    this.restLights = JSON.parse(JSON.stringify(scene.lights));
     this.matrices = scene.instances.map((instance) => instance.matrix);
     this.poses = scene.instances.map((instance) => instance.pose || null);
     this.version = 0;  // Changes with the pose.

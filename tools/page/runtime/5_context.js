@@ -69,7 +69,7 @@ class Gpu {
       gl.texParameteri(target, gl.TEXTURE_MAX_LEVEL, level - 1);
       return {name, target};
     }
-    let image = texture.t === 'encoded' ? await data.decoded(gl, texture) : data.spread(texture);
+    const image = await data.image(gl, texture);
     gl.bindTexture(target, name);
     const isByte = image.samples instanceof Uint8Array;
     const format = isByte ? (texture.srgb ? gl.SRGB8_ALPHA8 : gl.RGBA8) : this.filtersFloats ? gl.RGBA32F : gl.RGBA16F;
@@ -103,10 +103,9 @@ class Gpu {
     if (this.samplers[i]) return this.samplers[i];
     const {gl} = this, s = this.data.page.samplers[i];
     const name = gl.createSampler();
-    gl.samplerParameteri(name, gl.TEXTURE_WRAP_S, s.u);
-    gl.samplerParameteri(name, gl.TEXTURE_WRAP_T, s.v);
-    gl.samplerParameteri(name, gl.TEXTURE_MIN_FILTER, s.min);
-    gl.samplerParameteri(name, gl.TEXTURE_MAG_FILTER, s.mag);
+    for (const [parameter, value] of [[gl.TEXTURE_WRAP_S, s.u], [gl.TEXTURE_WRAP_T, s.v],
+                                      [gl.TEXTURE_MIN_FILTER, s.min], [gl.TEXTURE_MAG_FILTER, s.mag]])
+      gl.samplerParameteri(name, parameter, value);
     const e = this.anisotropic;
     if (e && s.anisotropy > 1)
       gl.samplerParameterf(name, e.TEXTURE_MAX_ANISOTROPY_EXT, Math.min(s.anisotropy, gl.getParameter(e.MAX_TEXTURE_MAX_ANISOTROPY_EXT)));

@@ -47,6 +47,7 @@ class Painter {
     this.issueBlended(picture);
     gl.disable(gl.BLEND);
     if (picture.finishing) this.finish(picture.finishing);
+    if (picture.overlays.length) drawOverlays(this, picture);
     gl.disable(gl.SCISSOR_TEST);
     gl.bindVertexArray(null);
   }
@@ -125,25 +126,24 @@ class Painter {
       target.behind = target.newColor();
       target.behindLevels = target.levelsOf(target.behind);
     }
-    const blit = (from, to, a, b, filter) => {
-      gl.bindFramebuffer(gl.READ_FRAMEBUFFER, from);
-      gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, to);
-      gl.blitFramebuffer(0, 0, ...a, 0, 0, ...b, gl.COLOR_BUFFER_BIT, filter);
-    };
     const sizeOf = (level) => [Math.max(width >> level, 1), Math.max(height >> level, 1)];
-    blit(target.drawn, target.behindLevels[0], sizeOf(0), sizeOf(0), gl.NEAREST);
+    this.blit(target.drawn, target.behindLevels[0], sizeOf(0), sizeOf(0), gl.NEAREST);
     for (let level = 1; level < target.behindLevels.length; ++level)
-      blit(target.behindLevels[level - 1], target.behindLevels[level], sizeOf(level - 1), sizeOf(level), gl.LINEAR);
+      this.blit(target.behindLevels[level - 1], target.behindLevels[level], sizeOf(level - 1), sizeOf(level), gl.LINEAR);
     gl.bindFramebuffer(gl.FRAMEBUFFER, target.drawn);
+  }
+
+  // Copies colors from one framebuffer to another, of these sizes.
+  blit(from, to, a, b, filter) {
+    const {gl} = this;
+    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, from);
+    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, to);
+    gl.blitFramebuffer(0, 0, ...a, 0, 0, ...b, gl.COLOR_BUFFER_BIT, filter);
   }
 
   finish(pass) {
     const {gl, gpu, target} = this, [width, height] = this.size;
-    if (target.drawn !== target.resolved) {
-      gl.bindFramebuffer(gl.READ_FRAMEBUFFER, target.drawn);
-      gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, target.resolved);
-      gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
-    }
+    if (target.drawn !== target.resolved) this.blit(target.drawn, target.resolved, this.size, this.size, gl.NEAREST);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     this.limit();
     gl.viewport(0, 0, width, height);

@@ -23,8 +23,34 @@ class Probes {
     this.chosen = probe;
     page.part('explain').ariaPressed = String(probe !== null);
     page.part('probe').hidden = !probe;
+    this.drawFootprints(probe ? probe.lookups : []);
     if (probe) page.part('probe').textContent = probe.text + this.drawn(probe);
     page.change();
+  }
+
+  // Draws a small picture of each texture with the pixel's ellipse and a cross.
+  async drawFootprints(lookups) {
+    const {page} = this, {data} = page, list = page.part('lookups'), canvases = [];
+    for (const lookup of lookups) {
+      const texture = data.page.textures.find((t) => t.image === lookup.image);
+      if (!texture || !page.painter) continue;
+      const {width, height, samples} = await data.image(page.painter.gl, texture);
+      const canvas = Object.assign(document.createElement('canvas'), {width, height}), ink = canvas.getContext('2d');
+      const one = samples instanceof Uint8Array ? 1 : 255;
+      ink.putImageData(new ImageData(Uint8ClampedArray.from(samples, (x, i) => (i % 4 === 3 ? 255 : one * x)), width, height), 0, 0);
+      // A unit circle with the pixel's ways as axes, and a cross; textures repeat.
+      const [x, y] = lookup.at.map((share) => share - Math.floor(share)), {right, down} = lookup;
+      const path = new Path2D(), ellipse = new Path2D();
+      ellipse.arc(0, 0, 0.5, 0, 7);
+      path.addPath(ellipse, new DOMMatrix([...right, ...down, x, y]));
+      path.addPath(new Path2D(`M${x - 0.06} ${y}h.12m-.06-.06v.12`));
+      ink.scale(width, height);
+      Object.assign(ink, {strokeStyle: '#ffdc3c', lineWidth: 1 / 64});
+      ink.stroke(path);
+      canvases.push(canvas);
+    }
+    list.hidden = !canvases.length;
+    list.replaceChildren(...canvases);
   }
 
   // The pixel as this page draws it, with the first view in the size of the probe.

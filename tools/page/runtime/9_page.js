@@ -140,7 +140,7 @@ class Page {
     const clips = ['all', ...scene.clips];
     choose('clip', scene.clips.length > 1 ? clips : [], scene.clip === null ? 'all' : scene.clips[scene.clip], (value) => {
       scene.clip = value === 'all' ? null : scene.clips.indexOf(value);
-      scene.duration = scene.clip === null ? page.scene.duration : scene.clipDurations[scene.clip];
+      scene.duration = scene.clip === null ? page.scenes[0].duration : scene.clipDurations[scene.clip];
       this.part('time').max = scene.duration;
       this.moveTo(0);
     });

@@ -53,7 +53,8 @@ struct PageTexture {
     bool has_maxima = false;  ///< The levels are maxima of heights (shaders/height_march.glsl).
     bool is_gray = false;     ///< One or two channels are gray, and gray with alpha.
     int channels = 4;
-    int width = 0;  ///< Of `rows`, the number of texels.
+    std::string image = {};  ///< The name of the scene's image that it shows, if there is one.
+    int width = 0;           ///< Of `rows`, the number of texels.
     int height = 1;
     std::size_t section = 0;
 };
@@ -145,9 +146,28 @@ struct PageDraw {
     std::uint32_t triangle_count = 0;
     bool both_sides = false;
     PageLights lights;
-    std::map<std::string, std::size_t> rows;  ///< Textures by vertex, by name of the sampler.
-    int joint_pairs = 0;                      ///< Texels of joint_weights for a vertex.
-    glm::ivec2 morph_texels{0};               ///< Of morph_displacements: of a target, a vertex.
+    std::map<std::string, std::size_t> rows;     ///< Textures by vertex, by name of the sampler.
+    int joint_pairs = 0;                         ///< Texels of joint_weights for a vertex.
+    glm::ivec2 morph_texels{0};                  ///< Of morph_displacements: of a target, a vertex.
+    std::optional<std::size_t> overlay_program;  ///< In one color, if the picture has overlays.
+    bool hides_overlays = false;
+};
+
+/// Lines or discs over the finished picture (Overlays). Their colors are sRGB codes from 0 to 1.
+struct PageOverlay {
+    enum class Kind : std::uint8_t {
+        grid,       ///< Lines.
+        wireframe,  ///< The edges of the drawn triangles, by the programs of the draws.
+        frames,     ///< Lines of the vertices in the recorded pose.
+        markers,    ///< Discs on an instance, with a color per vertex, which nothing hides.
+    };
+    Kind kind = Kind::grid;
+    std::size_t program = 0;
+    std::size_t mesh = 0;  ///< Pairs of vertices, or vertices; without triangles.
+    std::size_t count = 0;
+    glm::vec3 color_srgb{0.0F};
+    glm::dvec3 origin{0.0};  ///< Of lines, in world space.
+    std::optional<std::size_t> instance;
 };
 
 /// A pass over the whole picture.
@@ -163,9 +183,10 @@ struct PagePicture {
     std::optional<PageScreenPass> finishing;  ///< Surfaces are drawn into half floats.
     int samples = 1;
     bool has_shadow_maps = false;
-    bool copies_behind = false;     ///< For transmissive surfaces.
-    bool counts_fragments = false;  ///< The overdraw view.
-    glm::vec4 clear_color{0.0F};    ///< Of the target of surfaces.
+    bool copies_behind = false;         ///< For transmissive surfaces.
+    bool counts_fragments = false;      ///< The overdraw view.
+    std::vector<PageOverlay> overlays;  ///< In the order in which they are drawn.
+    glm::vec4 clear_color{0.0F};        ///< Of the target of surfaces.
 };
 
 /// All pictures, and what they share.
@@ -191,7 +212,7 @@ class PageRecorder {
     /// Records one picture. Meshes that move in time are recorded with all of their deformations.
     ///
     /// \param plan      for one sample per pixel
-    /// \param settings  of the picture; coding srgb, without overlays. With 4 samples, surfaces
+    /// \param settings  of the picture; coding srgb. With 4 samples, surfaces
     ///                  without blending and transmission write what the picture shows of them, so
     ///                  that the mean of samples is exact; others write radiance
     /// \param report    also counts what WebGL 2 does not guarantee, and what the page leaves out
@@ -223,6 +244,14 @@ inline constexpr auto enum_names<shade::PageTexture::Kind> =
     std::to_array<EnumName<shade::PageTexture::Kind>>({{"map", shade::PageTexture::Kind::map},
                                                        {"cube", shade::PageTexture::Kind::cube},
                                                        {"rows", shade::PageTexture::Kind::rows}});
+
+template <>
+inline constexpr auto enum_names<shade::PageOverlay::Kind> =
+    std::to_array<EnumName<shade::PageOverlay::Kind>>(
+        {{"grid", shade::PageOverlay::Kind::grid},
+         {"wireframe", shade::PageOverlay::Kind::wireframe},
+         {"frames", shade::PageOverlay::Kind::frames},
+         {"markers", shade::PageOverlay::Kind::markers}});
 
 template <>
 inline constexpr auto enum_names<shade::PagePass> =
