@@ -254,7 +254,7 @@ void compare_choice_with_conversion(const FieldRecipe& recipe, int side, std::si
     Image map = make_image(side, side, 3, 16, ColorSpace::data);
     Image exact_map = map;
     std::vector<Contender> all{
-        {"choice", [&] { choose_kernel(field.heights, open); }},
+        {"choice", [&] { resolve_options(field.heights, open); }},
         {"float32", [&] { normal_map_from_height(field.heights, chosen, {}, map); }},
         {"float64", [&] { normal_map_from_height(field.heights, exact, {}, exact_map); }}};
     std::vector<Contender> on_two_threads{all[0], all[1]};

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <iterator>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "bump/kernel_error_model.h"
+#include "image/texel_loops.h"
 #include "relief/mesh/execution.h"
 #include "relief/mesh/height_map.h"
 #include "relief/mesh/report.h"
@@ -184,22 +186,76 @@ std::vector<Image> every_other(std::span<const Image> parts) {
     return result;
 }
 
-/// Returns the centers of the parts, a quarter of each. Empty if they would contain too little.
-std::vector<Image> centers_of(std::span<const Image> parts) {
-    constexpr std::size_t min_parts = (many_parts + 1) / 2;
-    constexpr int part_side = 128;
-    constexpr int side = 64;
-    constexpr int offset = (part_side - side) / 2;  // A multiple of the blocks of JPEG.
-    std::vector<Image> centers;
-    if (parts.size() < min_parts) return centers;
-    for (const Image& part : parts) {
-        if (part.width != part_side || part.height != part_side) return {};
-        centers.push_back(part_of(part, {offset, offset, side, side}));
+/// Returns the roughness of a block of a part: the mean of the magnitudes of the second differences
+/// along rows and columns, at every other row. Holes do not count.
+template <typename Sample>
+double roughness_of(const Image& part, const ImagePart& block) {
+    const std::ptrdiff_t pitch = part.width;
+    const Sample* const first = part.as<Sample>().data() + block.y * pitch + block.x;
+    // The lanes of the sum need not wait for each other.
+    constexpr int lanes = 8;
+    std::array<float, lanes> sums{};
+    double sum = 0.0;
+    for (int y = 1; y + 1 < block.height; y += 2) {
+        sums.fill(0.0F);
+        const Sample* const row = first + y * pitch;
+        const auto add = [&](int x, float& lane) {
+            const auto twice = 2.0F * static_cast<float>(row[x]);
+            const float bend =
+                std::abs(static_cast<float>(row[x - 1]) + static_cast<float>(row[x + 1]) - twice) +
+                std::abs(static_cast<float>(row[x - pitch]) + static_cast<float>(row[x + pitch]) -
+                         twice);
+            lane += bend <= std::numeric_limits<float>::max() ? bend : 0.0F;
+        };
+        int x = 1;
+        for (; x + lanes < block.width; x += lanes) {
+            for (int lane = 0; lane < lanes; ++lane)
+                add(x + lane, sums[static_cast<std::size_t>(lane)]);
+        }
+        for (; x + 1 < block.width; ++x)
+            add(x, sums[0]);
+        for (const float one : sums)
+            sum += static_cast<double>(one);
     }
-    return centers;
+    return sum;
 }
 
-/// Returns true if the best kernel is a Gaussian that centers_of() do not contain often enough.
+/// Returns five blocks of 64 x 64 texels of many parts: those in the middle of each fifth of all
+/// blocks by roughness, so that they stand for smooth and rough places alike. The first and the
+/// last one, which are a sample of them, are neither the smoothest nor the roughest. Empty if the
+/// parts contain too little.
+std::vector<Image> typical_blocks(std::span<const Image> parts) {
+    constexpr std::size_t min_parts = (many_parts + 1) / 2;
+    constexpr int part_side = 128;
+    constexpr int side = 64;  // A multiple of the blocks of JPEG.
+    struct Block {
+        double roughness = 0.0;
+        std::size_t part = 0;
+        ImagePart place;
+    };
+    if (parts.size() < min_parts) return {};
+    std::vector<Block> blocks;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (parts[i].width != part_side || parts[i].height != part_side) return {};
+        for (const auto& [left, top] : {std::pair(0, 0), {side, side}, {side, 0}, {0, side}}) {
+            const ImagePart place{left, top, side, side};
+            const double roughness = with_sample_type(parts[i], [&]<typename Sample>(Sample) {
+                return roughness_of<Sample>(parts[i], place);
+            });
+            blocks.push_back({roughness, i, place});
+        }
+    }
+    std::stable_sort(blocks.begin(), blocks.end(),
+                     [](const Block& a, const Block& b) { return a.roughness < b.roughness; });
+    std::vector<Image> result;
+    for (const std::size_t fifth : {1U, 0U, 2U, 4U, 3U}) {
+        const Block& block = blocks[(2 * fifth + 1) * blocks.size() / 10];
+        result.push_back(part_of(parts[block.part], block.place));
+    }
+    return result;
+}
+
+/// Returns true if the best kernel is a Gaussian that typical_blocks() do not contain often enough.
 bool is_wide(const KernelPrediction& prediction) {
     constexpr int max_radius = 6;
     return prediction.kernel == Kernel::gaussian && prediction.gaussian_radius > max_radius;
@@ -259,17 +315,16 @@ BestKernel best_on(std::span<const Image> parts, const HeightCoding& coding,
 
 BestKernel best_of_map(std::span<const Image> parts, const HeightCoding& coding,
                        const ChoiceRequest& request) {
-    // The centers of many parts suffice, except for kernels that are wide compared with them.
-    const std::vector<Image> sample = every_other(parts);
-    const std::vector<Image> centers = centers_of(sample);
-    if (!centers.empty()) {
+    // Some blocks suffice, except for kernels that are wide compared with them.
+    const std::vector<Image> blocks = typical_blocks(parts);
+    if (!blocks.empty()) {
         // Loops over so few texels end before other threads have begun.
         const ExecutionScope one_thread({1, nullptr});
-        BestKernel best = best_on(centers, coding, request);
+        BestKernel best = best_on(blocks, coding, request);
         best.max_threads = 1;
         if (!is_wide(best.prediction)) return best;
     }
-    return best_on(sample, coding, request);
+    return best_on(every_other(parts), coding, request);
 }
 
 /// Describes the best kernel, without the range of its error.

@@ -712,7 +712,7 @@ KernelPrediction KernelErrorModel::predict(Kernel kernel, int radius, bool of_sa
     BumpOptions options = map_.options;
     options.kernel = kernel;
     options.gaussian_radius = radius;
-    // A sample consists of parts on a diagonal.
+    // A sample consists of parts on a diagonal, or of two of five blocks.
     const std::size_t step = !(of_sample && has_sample()) ? 1 : degraded_.size() == 4 ? 3 : 4;
     std::vector<AngleStatistics> part_errors((degraded_.size() + step - 1) / step);
     parallel_for(part_errors.size(), 1, [&](std::size_t begin, std::size_t end) {

@@ -549,7 +549,7 @@ TEST(KernelChoiceOnWidelyBlurredNoise, StatesBothInterpretations) {
 }
 
 TEST_LABELS(not_sanitized);
-TEST(KernelChoiceOnLargeMaps, CentersOfThePartsSufficeUnlessTheKernelIsWide) {
+TEST(KernelChoiceOnLargeMaps, BlocksOfAllPartsAreMeasuredUnlessTheKernelIsWide) {
     const auto parts_with = [](double noise) {
         std::vector<Image> parts;
         std::mt19937 random(3);
@@ -563,13 +563,10 @@ TEST(KernelChoiceOnLargeMaps, CentersOfThePartsSufficeUnlessTheKernelIsWide) {
         }
         return parts;
     };
-    const auto change_borders = [](std::vector<Image> parts) {
-        for (Image& part : parts) {
-            for (int i = 0; i < 128 * 128; ++i) {
-                const bool is_center =
-                    std::min(i % 128, i / 128) >= 32 && std::max(i % 128, i / 128) < 96;
-                if (!is_center) part.as<float>()[static_cast<std::size_t>(i)] *= 0.5F;
-            }
+    const auto change_every_other = [](std::vector<Image> parts) {
+        for (std::size_t part = 1; part < parts.size(); part += 2) {
+            for (float& height : parts[part].as<float>())
+                height *= 0.5F;
         }
         return parts;
     };
@@ -578,10 +575,53 @@ TEST(KernelChoiceOnLargeMaps, CentersOfThePartsSufficeUnlessTheKernelIsWide) {
         return std::pair(choice.gaussian_radius, choice.rms_degrees);
     };
     const std::vector<Image> quiet = parts_with(0.001);
-    EXPECT_EQ(errors_of(quiet), errors_of(change_borders(quiet)));
+    EXPECT_NE(errors_of(quiet), errors_of(change_every_other(quiet)));
+    // Five whole parts are measured: the corners and the center.
     const std::vector<Image> noisy = parts_with(0.3);
     EXPECT_GT(errors_of(noisy).first, 6);
-    EXPECT_NE(errors_of(noisy), errors_of(change_borders(noisy)));
+    EXPECT_EQ(errors_of(noisy), errors_of(change_every_other(noisy)));
+}
+
+TEST_LABELS(not_sanitized);
+TEST(KernelChoiceOnLargeMaps, DetailInAThirdOfTheMapCounts) {
+    // Wherever the detail is, the same kernel is the best, and its error is expected.
+    constexpr int size = 384;
+    for (const bool on_the_right : {false, true}) {
+        const auto height = [&](double x, double y, double& right, double& down) {
+            const double from = on_the_right ? size - 1 - x : x;
+            const double share = std::exp(-0.5 * std::pow(from / 60.0, 2));
+            const double slope_of_share =
+                share * -from / (60.0 * 60.0) * (on_the_right ? -1.0 : 1.0);
+            const double wave = 0.4 * std::sin(0.8 * x + 0.3 * y);
+            right = std::cos(0.05 * x) + slope_of_share * wave +
+                    share * 0.32 * std::cos(0.8 * x + 0.3 * y);
+            down = share * 0.12 * std::cos(0.8 * x + 0.3 * y);
+            return 20.0 * std::sin(0.05 * x) + share * wave;
+        };
+        Image floats = make_image(size, size, 1, 32, ColorSpace::data);
+        BumpField map;
+        for (int i = 0; i < size * size; ++i) {
+            double right = 0.0;
+            double down = 0.0;
+            floats.as<float>()[static_cast<std::size_t>(i)] =
+                static_cast<float>(height(i % size, i / size, right, down));
+            map.normals.push_back(glm::normalize(glm::dvec3(-right, down, 1.0)));
+            // Slopes are one-sided at the border.
+            constexpr int margin = 8;
+            const int column = i % size;
+            const int row = i / size;
+            if (std::min({column, row, size - 1 - column, size - 1 - row}) < margin)
+                map.normals.back().x = std::numeric_limits<double>::quiet_NaN();
+        }
+        CodedHeights coded = coded_heights(floats, 16);
+        map.heights = std::move(coded.codes);
+        map.options.wrap = Wrap::clamp;
+        map.options.strength = coded.strength;
+        const KernelChoice choice = choose_kernel(map.heights, map.options);
+        const double error = error_by(map, choice.kernel, choice.gaussian_radius);
+        EXPECT_LE(error, promised * min_error(map)) << choice.reason;
+        expect_range_holds(choice, error, on_the_right ? "right" : "left", any_width);
+    }
 }
 
 TEST_LABELS(not_sanitized);
