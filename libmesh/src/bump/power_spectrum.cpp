@@ -337,9 +337,9 @@ double PowerSpectrum::excess_over(const NoiseSpectrum& noise) const {
     double excess = 0.0;
     double power = 0.0;
     for (std::size_t i = 0; i < bins_.size(); ++i) {
-        const auto ring = static_cast<double>(i / sectors);
+        const std::size_t ring = i / sectors;
         excess += gains[i] * gains[i] * bins_[i].power * bins_[i].count;
-        power += noise.at(2.0 * pi * ring / side_, 0.0) * bins_[i].count;
+        power += noise.at(2.0 * pi * static_cast<double>(ring) / side_, 0.0) * bins_[i].count;
     }
     return power > 0.0 ? excess / power : std::numeric_limits<double>::infinity();
 }
