@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -22,6 +24,7 @@
 
 #include "io/gltf/gltf_accessor.h"
 #include "io/gltf/gltf_contents.h"
+#include "parallel.h"
 #include "progress_stage.h"
 
 namespace relief::detail {
@@ -329,8 +332,36 @@ class AccessorRepair {
         if (use.is_index) widen_indices(number);
     }
 
+    /// Returns whether a direction needs a repair. One that is not finite is refused elsewhere.
+    static bool is_bad_direction(const float* v, std::size_t components) {
+        const double square = static_cast<double>(v[0]) * static_cast<double>(v[0]) +
+                              static_cast<double>(v[1]) * static_cast<double>(v[1]) +
+                              static_cast<double>(v[2]) * static_cast<double>(v[2]);
+        if (!std::isfinite(square)) return false;
+        return std::abs(std::sqrt(square) - 1.0) > length_tolerance ||
+               (components == 4 && std::abs(v[3]) != 1.0F && std::isfinite(v[3]));
+    }
+
+    /// Looks at the floats of an accessor without a copy.
+    [[nodiscard]] bool has_bad_direction(std::size_t number, std::size_t components) {
+        constexpr std::size_t grain = 65536;
+        const PackedElements packed = packed_elements(contents_, number);
+        const std::string_view bytes = packed.bytes();
+        const std::size_t size = components * sizeof(float);
+        std::atomic<bool> found = false;
+        parallel_for(bytes.size() / size, grain, [&](std::size_t begin, std::size_t end) {
+            std::array<float, 4> direction{};
+            for (std::size_t i = begin; i < end; ++i) {
+                std::memcpy(direction.data(), bytes.data() + i * size, size);
+                if (is_bad_direction(direction.data(), components)) found = true;
+            }
+        });
+        return found;
+    }
+
     /// Normalizes normals and tangents, and makes the sign of a tangent 1 or -1.
     void repair_directions(std::size_t number, std::size_t components, std::string_view name) {
+        if (is_float(number) && !has_bad_direction(number, components)) return;
         Values values = values_of(number);
         bool is_changed = false;
         for (std::size_t i = 0; i < values.size(); i += components) {

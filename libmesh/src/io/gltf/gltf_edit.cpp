@@ -16,9 +16,11 @@
 #include <limits>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "io/gltf/gltf_accessor.h"
 #include "large_memory.h"
+#include "parallel.h"
 #include "relief/mesh/report.h"
 
 namespace relief {
@@ -44,6 +46,25 @@ void widen_bounds(std::string_view elements, std::size_t element_size, std::size
         std::memcpy(&value, elements.data() + at, sizeof(value));
         least = std::min(least, static_cast<double>(value));
         most = std::max(most, static_cast<double>(value));
+    }
+}
+
+/// Widens bounds by `count` elements, several pieces at a time. Of equal values, the first counts.
+template <typename Number, typename Widen>
+void widen_in_pieces(std::size_t count, Number& least, Number& most, const Widen& widen) {
+    constexpr std::size_t grain = 65536;
+    struct Piece {
+        Number least;
+        Number most;
+    };
+    std::vector<Piece> pieces((count + grain - 1) / grain, {least, most});
+    parallel_for(pieces.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+            widen(i * grain, std::min(count, (i + 1) * grain), pieces[i].least, pieces[i].most);
+    });
+    for (const Piece& piece : pieces) {
+        least = std::min(least, piece.least);
+        most = std::max(most, piece.most);
     }
 }
 
@@ -145,7 +166,14 @@ void detail::update_bounds(Json& accessor, std::string_view elements) {
         double low = std::numeric_limits<double>::infinity();
         double high = -low;
         const auto widen = [&]<typename Component>(Component) {
-            widen_bounds<Component>(elements, layout.size, k, low, high);
+            widen_in_pieces(
+                elements.size() / layout.size, low, high,
+                [&](std::size_t begin, std::size_t end, double& least_of_piece,
+                    double& most_of_piece) {
+                    widen_bounds<Component>(
+                        elements.substr(begin * layout.size, (end - begin) * layout.size),
+                        layout.size, k, least_of_piece, most_of_piece);
+                });
         };
         switch (layout.component_type) {
             case gltf_code::int8:
@@ -184,11 +212,15 @@ void detail::set_bounds(Json& accessor, std::span<const glm::vec3> positions) {
     for (int k = 0; k < 3; ++k) {
         float low = std::numeric_limits<float>::infinity();
         float high = -low;
-        for (const glm::vec3& position : positions) {
-            if (!std::isfinite(position[k])) continue;
-            low = std::min(low, position[k]);
-            high = std::max(high, position[k]);
-        }
+        widen_in_pieces(
+            positions.size(), low, high,
+            [&](std::size_t begin, std::size_t end, float& lowest, float& highest) {
+                for (const glm::vec3& position : positions.subspan(begin, end - begin)) {
+                    if (!std::isfinite(position[k])) continue;
+                    lowest = std::min(lowest, position[k]);
+                    highest = std::max(highest, position[k]);
+                }
+            });
         least.push_back(low <= high ? low : 0.0F);
         most.push_back(low <= high ? high : 0.0F);
     }

@@ -458,17 +458,6 @@ class ValueRepair {
   private:
     using Values = std::vector<float>;
 
-    /// Returns the floats of an accessor if one is not finite or, for normals, zero.
-    [[nodiscard]] std::optional<Values> invalid_values(std::size_t accessor, bool are_normals) {
-        if (!is_float(contents_, accessor)) return std::nullopt;
-        const PackedElements packed = packed_elements(contents_, accessor);
-        const std::string_view bytes = packed.bytes();
-        if (!are_normals && !first_non_finite(bytes)) return std::nullopt;
-        Values values(bytes.size() / sizeof(float));
-        std::memcpy(values.data(), bytes.data(), values.size() * sizeof(float));
-        return values;
-    }
-
     static bool is_invalid(const float* element, std::size_t components, bool is_normal) {
         bool is_zero = true;
         for (std::size_t k = 0; k < components; ++k) {
@@ -476,6 +465,35 @@ class ValueRepair {
             is_zero = is_zero && element[k] == 0.0F;
         }
         return is_normal && is_zero;
+    }
+
+    /// Returns the floats of an accessor if one is not finite or, for normals, if all of an element
+    /// are zero.
+    [[nodiscard]] std::optional<Values> invalid_values(std::size_t accessor, bool are_normals) {
+        if (!is_float(contents_, accessor)) return std::nullopt;
+        const PackedElements packed = packed_elements(contents_, accessor);
+        const std::string_view bytes = packed.bytes();
+        const std::size_t components =
+            element_layout(contents_.root["accessors"][accessor]).components;
+        if (!first_non_finite(bytes) && !(are_normals && has_zero(bytes, components)))
+            return std::nullopt;
+        Values values(bytes.size() / sizeof(float));
+        std::memcpy(values.data(), bytes.data(), values.size() * sizeof(float));
+        return values;
+    }
+
+    static bool has_zero(std::string_view floats, std::size_t components) {
+        constexpr std::size_t grain = 65536;
+        const std::size_t size = components * sizeof(float);
+        std::atomic<bool> found = false;
+        parallel_for(floats.size() / size, grain, [&](std::size_t begin, std::size_t end) {
+            std::vector<float> element(components);
+            for (std::size_t i = begin; i < end; ++i) {
+                std::memcpy(element.data(), floats.data() + i * size, size);
+                if (is_invalid(element.data(), components, true)) found = true;
+            }
+        });
+        return found;
     }
 
     void repair(const std::string& name, const Replacement& replacement, Json& accessor) {
