@@ -72,8 +72,10 @@ double level_spacing(const std::vector<unsigned>& used, unsigned divisor) {
         if (used[i] - used[i - 1] == divisor) return 1.0;
     }
     std::vector<double> codes;
-    for (const unsigned code : used)
-        codes.push_back((code - used.front()) / divisor);
+    for (const unsigned code : used) {
+        const unsigned place = (code - used.front()) / divisor;
+        codes.push_back(place);
+    }
     const double max_code = codes.back();
     // Masks and terraces have fewer levels.
     constexpr std::size_t min_levels = 8;
