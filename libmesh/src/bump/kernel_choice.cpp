@@ -192,9 +192,9 @@ template <typename Sample>
 double roughness_of(const Image& part, const ImagePart& block) {
     const std::ptrdiff_t pitch = part.width;
     const Sample* const first = part.as<Sample>().data() + block.y * pitch + block.x;
-    // The lanes of the sum need not wait for each other.
-    constexpr int lanes = 8;
-    std::array<float, lanes> sums{};
+    // The sums need not wait for each other.
+    constexpr int sum_count = 8;
+    std::array<float, sum_count> sums{};
     double sum = 0.0;
     for (int y = 1; y + 1 < block.height; y += 2) {
         sums.fill(0.0F);
@@ -208,8 +208,8 @@ double roughness_of(const Image& part, const ImagePart& block) {
             lane += bend <= std::numeric_limits<float>::max() ? bend : 0.0F;
         };
         int x = 1;
-        for (; x + lanes < block.width; x += lanes) {
-            for (int lane = 0; lane < lanes; ++lane)
+        for (; x + sum_count < block.width; x += sum_count) {
+            for (int lane = 0; lane < sum_count; ++lane)
                 add(x + lane, sums[static_cast<std::size_t>(lane)]);
         }
         for (; x + 1 < block.width; ++x)
