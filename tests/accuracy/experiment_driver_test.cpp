@@ -17,7 +17,7 @@
 #include "relief/accuracy/experiment.h"
 #include "relief/mesh/report.h"
 
-namespace relief {
+namespace relief::test {
 using namespace relief::accuracy;
 using namespace relief::accuracy::detail;
 
@@ -342,4 +342,4 @@ TEST(Subjects, HaveTheExperimentsOfTheirName) {
 }
 
 }  // namespace
-}  // namespace relief
+}  // namespace relief::test

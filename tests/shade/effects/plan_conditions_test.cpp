@@ -763,7 +763,7 @@ std::vector<Boundary> frame_boundaries() {
 
 /// Returns whether the effect is planned on one side of its boundary.
 bool is_planned(const Boundary& boundary, const std::vector<Change>& side) {
-    Frame frame;
+    test::changes::Frame frame;
     for (const Change& change : boundary.both)
         change(frame);
     for (const Change& change : side)

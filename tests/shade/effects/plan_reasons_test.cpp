@@ -91,7 +91,7 @@ TEST(EffectPlan, NamesTheReason) {
         {"ACES tone mapping", {reinhard}, "the scene requests another curve"},
     };
     for (const Decision& decision : decisions) {
-        Frame frame;
+        test::changes::Frame frame;
         for (const Change& change : decision.changes)
             change(frame);
         const FramePlan plan = plan_effects(frame.scene, frame.settings);

@@ -32,7 +32,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr int size = 192;
+constexpr int relief_side = 192;
 
 /// A camera that looks at the origin at an angle from the z axis, from below.
 Camera camera_at(double degrees, double distance = 6.0) {
@@ -137,7 +137,7 @@ struct Apart {
 class DepthMapped : public test::DrawTest {
   protected:
     [[nodiscard]] Apart apart(const Scene& scene, const Reference& reference,
-                              int pixels = size) const {
+                              int pixels = relief_side) const {
         const FrameSettings settings{.width = pixels, .height = pixels, .samples = 1};
         const Image expected =
             as_codes(reference_picture(reference.radiance, scene, OutputCoding::srgb));
@@ -161,19 +161,19 @@ class DepthMapped : public test::DrawTest {
     [[nodiscard]] Apart apart(const Scene& scene) const {
         return apart(scene, reference_of(scene));
     }
-    [[nodiscard]] static Reference reference_of(const Scene& scene, int pixels = size) {
+    [[nodiscard]] static Reference reference_of(const Scene& scene, int pixels = relief_side) {
         return render_reference(scene, {.width = pixels, .height = pixels});
     }
     [[nodiscard]] Image picture(const Scene& scene, const EffectRequest& request = {}) const {
         const FrameSettings settings{
-            .width = size, .height = size, .samples = 1, .camera = scene.camera};
+            .width = relief_side, .height = relief_side, .samples = 1, .camera = scene.camera};
         const FramePlan plan = plan_effects(scene, settings);
         return render(scene, force_effects(scene, settings, plan, request), settings).image;
     }
 };
 
 /// The reason of maximum mipmaps in the plan for the scene's camera.
-EffectReason planned(const Scene& scene, int pixels = size) {
+EffectReason planned(const Scene& scene, int pixels = relief_side) {
     const FramePlan plan = plan_effects(
         scene, {.width = pixels, .height = pixels, .samples = 1, .camera = scene.camera});
     for (const EffectReason& reason : plan.draws.at(0).reasons) {
@@ -290,10 +290,11 @@ TEST_F(DepthMapped, RaysCrossSeamsInTheMapOfTheirChart) {
             int compared = 0;
             int of_other = 0;  // Not those of the chart.
             int of_seam = 0;   // Not those of the near chart, beyond the seam.
-            for (int y = 0; y < size; ++y) {
-                for (int x = 0; x < size; ++x) {
+            for (int y = 0; y < relief_side; ++y) {
+                for (int x = 0; x < relief_side; ++x) {
                     if (test::pixel(exact.edges, x, y)[0] > 0.0) continue;
-                    const ReferenceHit& hit = exact.hits[static_cast<std::size_t>(size * y + x)];
+                    const ReferenceHit& hit =
+                        exact.hits[static_cast<std::size_t>(relief_side * y + x)];
                     if (hit.instance == ReferenceHit::none) continue;
                     ++compared;
                     const bool is_near = hit.triangle < 2;
@@ -305,7 +306,7 @@ TEST_F(DepthMapped, RaysCrossSeamsInTheMapOfTheirChart) {
                     of_seam += is_near ? 0 : differs(of_near);
                 }
             }
-            EXPECT_GT(compared, size * size / 8);
+            EXPECT_GT(compared, relief_side * relief_side / 8);
             EXPECT_LE(of_other, compared / 500);
             if (c.meets)
                 EXPECT_LE(of_seam, compared / 500);
@@ -435,8 +436,8 @@ TEST_F(DepthMapped, ReliefsBelowTheBoundMoveNoPixelByMore) {
             const Image without = picture(scene);
             const Image with = picture(scene, {EffectBase::planned, {{"maximum mipmaps", true}}});
             int beyond = 0;
-            for (int y = 1; y + 1 < size; ++y) {
-                for (int x = 1; x + 1 < size; ++x) {
+            for (int y = 1; y + 1 < relief_side; ++y) {
+                for (int x = 1; x + 1 < relief_side; ++x) {
                     const double here = test::pixel(without, x, y)[0];
                     double steepest = 0.0;
                     for (const glm::ivec2& to : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {

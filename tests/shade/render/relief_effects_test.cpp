@@ -27,8 +27,8 @@ namespace {
 using testing::HasSubstr;
 
 constexpr int pixels = 160;
-constexpr int texels = 64;  // Along the sides of the square, which are 4 long.
-constexpr double texel = 4.0 / texels;
+constexpr int map_side = 64;  // Along the sides of the square, which are 4 long.
+constexpr double texel = 4.0 / map_side;
 
 /// A camera that looks at the origin at an angle from the z axis, from below.
 Camera slanted(double degrees) {
@@ -49,10 +49,10 @@ Camera parallel(double degrees) {
 }
 
 Image heights_by(const std::function<double(int x, int y)>& height) {
-    Image image = make_image(texels, texels, 1, 16, ColorSpace::data);
-    for (int y = 0; y < texels; ++y) {
-        for (int x = 0; x < texels; ++x)
-            image.as<std::uint16_t>()[static_cast<std::size_t>(y * texels + x)] =
+    Image image = make_image(map_side, map_side, 1, 16, ColorSpace::data);
+    for (int y = 0; y < map_side; ++y) {
+        for (int x = 0; x < map_side; ++x)
+            image.as<std::uint16_t>()[static_cast<std::size_t>(y * map_side + x)] =
                 static_cast<std::uint16_t>(65535.0 * height(x, y) + 0.5);
     }
     return image;
@@ -237,7 +237,7 @@ TEST_F(ReliefEffects, AWallsShadowIsAsLongAsATangent) {
         // turned away from the light, and dark. The shadow begins at its upper edge.
         const double length = static_cast<double>(depth) * (1.0 - HeightField::shadow_lift) *
                               std::tan(glm::radians(degrees));
-        const double expected = length * pixels / texels;
+        const double expected = length * pixels / map_side;
         const double dark = 0.2 * 0.5 + 0.01;
         for (const int row : {10, 80, 150})
             EXPECT_NEAR(darker(image, dark, row, true), expected, 1.0) << degrees;
@@ -310,14 +310,14 @@ TEST_F(ReliefEffects, SilhouettesEndWhereTheViewLeavesTheMap) {
         const double pixels_per_texel = texel * std::cos(glm::radians(degrees)) * pixels / 6.0;
         map_of(scene).silhouette = ReliefSilhouette::none;
         scene.materials[0].diffuse_texture = Texture{0};
-        EXPECT_NEAR(covered(drawn(scene)), texels * pixels_per_texel, 1.0);
+        EXPECT_NEAR(covered(drawn(scene)), map_side * pixels_per_texel, 1.0);
         map_of(scene).silhouette = ReliefSilhouette::clip;
         const double hidden = static_cast<double>(depth) * std::tan(glm::radians(degrees));
-        EXPECT_NEAR(covered(drawn(scene)), (texels - hidden) * pixels_per_texel, 1.0);
+        EXPECT_NEAR(covered(drawn(scene)), (map_side - hidden) * pixels_per_texel, 1.0);
         EXPECT_LT(differing(scene), 0.001);
         // Along an axis that repeats, nothing is clipped.
         map_of(scene).texture.wrap_v = Wrap::repeat;
-        EXPECT_NEAR(covered(drawn(scene)), texels * pixels_per_texel, 1.0);
+        EXPECT_NEAR(covered(drawn(scene)), map_side * pixels_per_texel, 1.0);
         map_of(scene).texture.wrap_u = Wrap::repeat;
         EXPECT_THAT(reason_of(scene, "clipped relief").reason, HasSubstr("no border"));
     }
