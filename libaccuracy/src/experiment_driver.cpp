@@ -253,7 +253,7 @@ constexpr std::array subject_entries = {
     SubjectEntry{Subject::bake, bake_plan},
     SubjectEntry{Subject::decimation, decimation_plan},
     SubjectEntry{Subject::unwrapping, unwrapping_plan},
-    SubjectEntry{Subject::relief, relief_plan},
+    SubjectEntry{Subject::relief, relief_plan, true},
     SubjectEntry{Subject::shading, shading_plan, true},
     SubjectEntry{Subject::stability, stability_plan},
 };

@@ -2,9 +2,11 @@
 // The results of the experiments on relief mapping with the inputs of a full run.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
 
 #include "experiment_checks.h"
+#include "relief/mesh/image.h"
 #include "support/labels.h"
 
 namespace relief::test {
@@ -28,6 +30,37 @@ TEST(ReliefExperiments, ShowThatMaximumMipmapsAreExact) {
               std::string::npos);
     ASSERT_EQ(bricks.charts.size(), 1U);
     EXPECT_TRUE(run_one("relief/waves-70-85").charts.empty());
+}
+
+/// The plane of a triangle leaves an error on curved surfaces, which falls at steep views.
+TEST(ReliefExperiments, ShowWhatCurvatureCosts) {
+    for (const std::string surface : {"cylinder", "torus"}) {
+        const auto error_of = [&](const std::string& band, const std::string& method) {
+            return measurement_of(run_one("relief/" + surface + "-" + band), method).error.rms;
+        };
+        const double steep = error_of("0-30", "maximum mipmaps");
+        EXPECT_GT(steep, 0.01);
+        EXPECT_LT(steep, 0.3);
+        EXPECT_LT(steep, 0.25 * error_of("0-30", "normal map"));
+        EXPECT_GT(error_of("45-70", "maximum mipmaps"), 3.0 * steep);
+    }
+}
+
+TEST(ReliefExperiments, MeasureAHeightMapOfTheUser) {
+    Image heights = make_image(16, 16, 1, 8, ColorSpace::data);
+    for (std::size_t i = 0; i < 256; ++i)
+        heights.as<std::uint8_t>()[i] = static_cast<std::uint8_t>(i * 37 % 256);
+    AssetOptions options = untimed_asset("rough.png");
+    options.run.is_quick = true;
+    options.request.max_error = 1e-9;  // In degrees: it does not count.
+    const AssetExperiment own = measure_asset_relief(heights, Wrap::repeat, 2.0, {20, 40}, options);
+    EXPECT_EQ(own.experiment.id, "own/rough.png/relief");
+    EXPECT_NE(own.experiment.input.find("16 x 16 texels, 2 deep"), std::string::npos);
+    EXPECT_EQ(found(own, "maximum mipmaps").error.max, 0.0);
+    EXPECT_GT(found(own, "parallax").error.rms, 0.1);
+    EXPECT_EQ(own.command(),
+              "relief-view MODEL --height-map rough.png --height-depth 2 --height-method "
+              "maximum_mipmaps");
 }
 
 }  // namespace

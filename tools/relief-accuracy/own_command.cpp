@@ -49,6 +49,8 @@ struct AssetRequest {
     std::optional<NormalReference> reference;
     std::optional<double> crease_degrees;
     std::optional<double> strength;
+    std::optional<double> relief_depth;      ///< Of black in texels.
+    std::optional<glm::dvec2> view_degrees;  ///< Between the view and the normal.
     std::optional<HeightChannel> channel;
     std::optional<WrapsOrAuto> wrap;
     std::optional<int> size;
@@ -62,6 +64,7 @@ struct AssetInput {
 };
 
 constexpr int default_map_size = 256;
+constexpr glm::dvec2 default_view_degrees{45.0, 70.0};
 constexpr std::size_t quick_triangles = std::size_t{1} << 17;
 constexpr std::int64_t quick_texels = std::int64_t{1} << 18;
 
@@ -192,6 +195,13 @@ std::vector<AssetExperiment> measure_heights(const AssetInput& input, const Asse
     std::vector<AssetExperiment> all = {
         measure_asset_heights(parts.sample(survey.parts), {width, height}, bump, options, report)};
     all.front().experiment.input_findings = height_findings(map, request, report);
+    if (request.relief_depth) {
+        if (map.is_streamed())
+            throw InvalidInput("the map is too large for --height-depth: it is read in parts");
+        all.push_back(measure_asset_relief(map.map().heights, *bump.wrap, *request.relief_depth,
+                                           request.view_degrees.value_or(default_view_degrees),
+                                           options));
+    }
     return all;
 }
 
@@ -283,6 +293,9 @@ void check_effects(const AssetRequest& request, const std::vector<AssetInput>& i
     require(images, request.image_kind.has_value(), "--image", "images");
     require(heights, request.strength.has_value(), "--strength", "height maps");
     require(heights, request.wrap.has_value(), "--wrap", "height maps");
+    require(heights, request.relief_depth.has_value(), "--height-depth", "height maps");
+    require(request.relief_depth.has_value(), request.view_degrees.has_value(), "--view-angles",
+            "relief mapping, --height-depth");
     require(heights, request.channel.has_value(), "--channel", "height maps");
 }
 
@@ -462,6 +475,22 @@ void add_input_options(CLI::App& app, AssetRequest& request) {
     add_number(app, "--strength", "S", request.strength, {-1e6, 1e6, "texels"},
                "Height maps: the height of the value 1.0 in texels. Default: 16.")
         .group(image);
+    add_number(app, "--height-depth", "D", request.relief_depth, {0.01, 16384.0, "texels"},
+               "Height maps: also measure the methods of relief mapping, with black at this depth "
+               "in texels: errors in texels, for views of a plane.")
+        .group(image);
+    add_value(app, "--view-angles", "FROM,TO",
+              "With --height-depth: the smallest and the largest angle in degrees between the view "
+              "and the normal of the surface, within 0 to 89. Default: 45,70.",
+              [&](const std::string& subject, const std::string& text) {
+                  const std::vector<double> angles = parse_numbers(subject, text);
+                  if (angles.size() != 2 ||
+                      !(0.0 <= angles[0] && angles[0] <= angles[1] && angles[1] <= 89.0))
+                      throw UsageError(fmt::format(
+                          "{} '{}': not two ascending angles within 0 to 89", subject, text));
+                  request.view_degrees = glm::dvec2(angles[0], angles[1]);
+              })
+        .group(image);
     add_choice(
         app, "--channel", request.channel, enum_choices<HeightChannel>(),
         "Height maps: the height channel of a color image, as for relief-bake bump; the image is "
@@ -500,6 +529,8 @@ void add_options(CLI::App& app, AssetCommandOptions& options) {
     set_examples(
         app, {"relief-accuracy own data/vase.obj --quick",
               "relief-accuracy own data/bricks-height.png --strength 12 --max-error 4 --quick",
+              "relief-accuracy own data/bricks-height.png --height-depth 12 --view-angles 60,80 "
+              "--quick",
               "relief-mesh subdivide data/vase.obj out/high.obj --levels 2",
               "relief-accuracy own --high out/high.obj --low data/vase.obj --size 64 --repeats 3",
               "relief-accuracy own data/vase.obj --crease 40 --no-times --output out/vase"});

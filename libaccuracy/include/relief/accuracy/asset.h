@@ -313,6 +313,19 @@ struct NormalMapStorage {
     std::string extension = ".png";
 };
 
+/// Compares the methods of relief mapping on a height map by their errors in texels, for views of a
+/// plane.
+///
+/// \param wraps  beyond the border
+/// \param depth  of black in texels, above 0
+/// \param degrees  the smallest and the largest angle between the view and the normal, within 0 to
+///         89
+/// \return the recommendation and its command for relief-view, by times alone:
+///         MethodRequest::max_error is ignored. Maps of more than 2^20 texels have no cone map
+/// \throws InvalidInput as HeightField does
+AssetExperiment measure_asset_relief(const Image& heights, const Wraps& wraps, double depth,
+                                     const glm::dvec2& degrees, const AssetOptions& options);
+
 /// Measures storage formats for a normal map against the normals in its file; keeping the file is
 /// one of them.
 /// \param normals  three float channels, as from decode_normal_map()
