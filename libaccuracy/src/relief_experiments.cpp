@@ -317,8 +317,9 @@ ReliefInput curved_input(const DisplacedSurface& truth, const ViewBand& band, st
         for (int i = 0; i < 3; ++i) {
             const std::uint32_t vertex = truth.mesh.triangles[hit.triangle][i];
             const int stride = surface.repeats.x * truth.fields->heights.size().x + 1;
-            const glm::dvec2 vertex_at(static_cast<int>(vertex) % stride,
-                                       static_cast<int>(vertex) / stride);
+            const int column = static_cast<int>(vertex) % stride;
+            const int row = static_cast<int>(vertex) / stride;
+            const glm::dvec2 vertex_at(column, row);
             found += hit.weights[i] * (vertex_at + 0.5) / (repeats * size);
         }
         // The nearest of the coordinates of the point.
