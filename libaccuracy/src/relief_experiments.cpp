@@ -672,19 +672,19 @@ std::vector<PlannedExperiment> relief_plan(const PlanOptions& options) {
     const ReliefMap& bricks = relief_maps.front();
     const SharedInput<ReliefFields> fields = fields_of_map(bricks);
     for (const CurvedSurface& surface : curved_surfaces) {
-        const SharedInput<DisplacedSurface> truth([&surface, &bricks, fields] {
+        const SharedInput<DisplacedSurface> truth([&surface, fields] {
             return std::shared_ptr<const DisplacedSurface>(
                 new DisplacedSurface{surface, fields.get(), bricks.depth});
         });
         for (const ViewBand& band : view_bands) {
             add(fmt::format("{}-{}", surface.id, name_of(band)),
                 fmt::format("{}, {:g} to {:g} degrees", surface.id, band.from, band.to),
-                [=, &bricks](const PlanOptions& all) {
+                [=](const PlanOptions& all) {
                     return curved_experiment(bricks, band, truth, all.is_quick);
                 });
         }
         add(fmt::format("{}-drawn", surface.id), fmt::format("{}, rendered", surface.id),
-            [=, &bricks](const PlanOptions& all) { return drawn_experiment(bricks, truth, all); });
+            [=](const PlanOptions& all) { return drawn_experiment(bricks, truth, all); });
     }
     return plan;
 }
