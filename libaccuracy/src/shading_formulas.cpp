@@ -34,13 +34,13 @@ namespace {
 PreparedExperiment formula_experiment(Experiment report, const std::shared_ptr<const void>& inputs,
                                       const std::vector<FormulaMethod>& methods,
                                       const std::vector<double>& ground_truth) {
-    struct State {
+    struct FormulaState {
         std::shared_ptr<const void> inputs;
         std::vector<float> results;
         std::span<float> to = results;
     };
-    const auto state =
-        std::make_shared<State>(State{inputs, std::vector<float>(ground_truth.size())});
+    const auto state = std::make_shared<FormulaState>(
+        FormulaState{inputs, std::vector<float>(ground_truth.size())});
     PreparedExperiment prepared;
     prepared.report = std::move(report);
     prepared.costs = {.all_threads = false, .memory = false};
