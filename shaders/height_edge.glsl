@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the hit of a relief (height_march.glsl) decides besides colors: silhouettes and depth.
+// Silhouettes and depth, which follow from the hit of a relief (height_march.glsl).
 
 //@part clip_both implements relief_edge
 // Fragments whose ray leaves the map along an axis that does not repeat are discarded. As with masks

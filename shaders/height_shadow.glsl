@@ -27,8 +27,7 @@ float patch_climb(vec2 from, vec2 up, ivec2 cell, float start, float climbed) {
 // Returns whether the relief hides the direction `up`, in texels for each texel of height.
 bool is_hidden(vec2 from, vec2 up) {
     ivec2 cell = ivec2(floor(from));
-    ivec2 size = textureSize(height_texture, 0);
-    int last_level = int(floor(log2(float(max(size.x, size.y)))));
+    int last_level = int(floor(log2(float(max(height_texels.x, height_texels.y)))));
     float height = heights_along(from - vec2(cell), up, cell).x;
     float start = height_depth * max(1.0 - height - relief_lift, 0.0);
     if (start == 0.0) return false;

@@ -26,7 +26,7 @@ struct PageHeights {
     std::vector<BumpOptions> conversions;  ///< By converted_heights(), with 16 bits.
 };
 
-/// What a page has instead of a texture's samples.
+/// The data that replaces a texture's samples in a page.
 struct PackedImage {
     std::vector<std::uint8_t> bytes;
     Json fields;  ///< Changes of the texture's description.

@@ -62,8 +62,8 @@ struct OverlaySurface {
 /// \param color  the part of the step overlay_color
 ShaderSteps overlay_steps(const char* color, bool morphing, bool skinning);
 
-/// What overlays draw beside the edges of surfaces: lines of one color in world space, or discs on
-/// an instance, which have colors of their own.
+/// The part of the overlays that is not edges of surfaces: lines of one color in world space, or
+/// discs with their own colors on an instance.
 struct OverlayLines {
     const gl::VertexArray* vertices = nullptr;
     GLsizei count = 0;
