@@ -30,9 +30,11 @@
 #include <vector>
 
 #include "bake/embree_scene.h"
+#include "relief/export.h"
 #include "relief/mesh/bake.h"
 
-namespace relief::detail {
+namespace RELIEF_API relief {
+namespace detail {
 
 /// Triangles of one mesh; both spans must outlive the scene.
 struct RayMesh {
@@ -53,8 +55,9 @@ struct RayHit {
 
 class RayScene {
   public:
-    /// \param expected_rays  an estimate, which decides how thoroughly the scene is built
-    /// (SceneBuild) \param order          the order of coincident triangles that face the same way
+    /// \param expected_rays  an estimate, which decides how thoroughly the scene is built:
+    /// SceneBuild
+    /// \param order  the order of coincident triangles that face the same way
     explicit RayScene(std::vector<RayMesh> meshes,
                       double expected_rays = std::numeric_limits<double>::infinity(),
                       TriangleOrder order = {});
@@ -146,4 +149,5 @@ double diagonal(const Bounds& box);
 /// Like the public compare_boxes(), for existing boxes.
 BakeFit compare_boxes(const Bounds& high, const Bounds& low);
 
-}  // namespace relief::detail
+}  // namespace detail
+}  // namespace relief
