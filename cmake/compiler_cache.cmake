@@ -3,9 +3,9 @@
 #
 # CCACHE_BASEDIR and CCACHE_NOHASHDIR let a clone in another folder hit the same entries, and so does a __FILE__ that is
 # relative to the sources: every assertion of a test contains one. The sloppiness is what ccache requires for
-# precompiled headers: it cannot see macros that a precompiled header hides. GCC must write its precompiled headers into
-# the preprocessed text (-fpch-preprocess) for ccache to hash them. Clang must leave the times of headers out of its own,
-# and a script hashes them.
+# precompiled headers: it cannot see macros that a precompiled header hides. A script hashes their headers instead of
+# their bytes. GCC must name precompiled headers in the preprocessed text (-fpch-preprocess) for ccache to notice them,
+# and Clang must leave the times of headers out of its own.
 option(RELIEF_CCACHE "Compile through ccache where it is installed" ON)
 find_program(RELIEF_CCACHE_PROGRAM ccache)
 if(RELIEF_CCACHE AND RELIEF_CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
@@ -14,9 +14,11 @@ if(RELIEF_CCACHE AND RELIEF_CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
             ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
             CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime)
     endforeach()
-    if(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+    if(CMAKE_HOST_UNIX)
         list(APPEND CMAKE_CXX_COMPILER_LAUNCHER CCACHE_PCH_EXTSUM=1
-             ${CMAKE_CURRENT_LIST_DIR}/ccache-with-clang.sh)
+             ${CMAKE_CURRENT_LIST_DIR}/ccache-with-pch.sh)
+    endif()
+    if(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
         add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-Xclang -fno-pch-timestamp>")
     else()
         add_compile_options($<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fpch-preprocess>)

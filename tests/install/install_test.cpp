@@ -379,6 +379,33 @@ TEST(AddedFolder, GivesTheMeshComponentAlone) {
     EXPECT_THAT(commands, testing::Not(HasSubstr("libmesh/src/io/")));
 }
 
+// Precompiled headers have other bytes in each folder, and the object is found nevertheless.
+TEST(CompilerCache, HasTheObjectsOfAnotherFolder) {
+    if (run_clean("ccache --version", ".").exit_code != 0) GTEST_SKIP() << "needs ccache";
+    const TemporaryDirectory folder;
+    const std::string cache = "CCACHE_DIR='" + (folder / "cache").string() + "' ";
+    for (const char* name : {"first", "second_folder"}) {
+        const std::filesystem::path project = folder.path() / name;
+        std::filesystem::create_directories(project);
+        std::ofstream(project / "CMakeLists.txt")
+            << "cmake_minimum_required(VERSION 3.22)\nproject(engine CXX)\ninclude(\""
+            << (source_directory() / "cmake/compiler_cache.cmake").string()
+            << "\")\nadd_library(engine OBJECT engine.cpp)\n"
+               "target_precompile_headers(engine PRIVATE engine.h)\n";
+        std::ofstream(project / "engine.h") << "#include <vector>\n";
+        std::ofstream(project / "engine.cpp")
+            << "#include \"engine.h\"\nstd::vector<int> numbers() { return {1, 2}; }\n";
+        configure(".", "", project);
+        if (HasFailure()) return;
+        expect_success(cache + "cmake --build build", project);
+        if (HasFailure()) return;
+    }
+    const std::string statistics = run_clean(cache + "ccache --print-stats", folder.path()).out;
+    const auto count = [&](const char* name) { return numbers_after(statistics, name).at(0); };
+    EXPECT_EQ(count("direct_cache_hit") + count("preprocessed_cache_hit"), 1.0) << statistics;
+    EXPECT_EQ(count("cache_miss"), 1.0) << statistics;
+}
+
 // Two of five sources have a structure of one name, so that the five do not compile as a batch, but
 // the other three do. Their objects are joined; those of Windows would lose their exception
 // handlers, as scripts/dev/try-windows has shown.

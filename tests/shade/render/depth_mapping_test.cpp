@@ -22,6 +22,7 @@
 #include "render/textures.h"
 #include "shade/render/draw_support.h"
 #include "support/labels.h"
+#include "support/sanitized.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -32,7 +33,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr int relief_side = 192;
+constexpr int relief_side = test::is_sanitized ? 96 : 192;
 
 /// A camera that looks at the origin at an angle from the z axis, from below.
 Camera camera_at(double degrees, double distance = 6.0) {
@@ -205,6 +206,7 @@ TEST_F(DepthMapped, MaximumMipmapsShowTheExactHits) {
                           Case{"one row", 64, 1, Wrap::repeat, {1, 1}, {0, 0}},
                           Case{"one texel", 1, 1, Wrap::repeat, {1, 1}, {0, 0}}}) {
         for (const double degrees : {0.0, 30.0, 60.0}) {
+            if (test::is_sanitized && degrees != 60.0) continue;
             SCOPED_TRACE(testing::Message() << c.name << ", " << degrees << " degrees");
             const Scene scene = with_texcoords(
                 relief_scene(hills(c.width, c.height), camera_at(degrees), 6.0F, c.wrap), c.scale,
