@@ -115,6 +115,26 @@ TEST_F(EffectOptions, ForceNeutralEffectsWithoutAChangeAndTakeOutOthersWithOne) 
     EXPECT_TRUE(told);
 }
 
+/// A relief of a hundredth of a texel moves nothing by half a pixel.
+TEST_F(EffectOptions, HaveABoundOfReliefs) {
+    workplace_.write_bricks("h.png");
+    const auto relief_with = [&](const std::string& bound) -> std::pair<bool, std::string> {
+        const json effects =
+            summary("--height-map h.png --height-depth 0.01 --explain-effects" + bound)
+                .at("effects");
+        for (const json& effect : effects.at("draws").at(0).at("effects")) {
+            if (effect.at("effect") == "maximum mipmaps")
+                return {effect.at("on"), effect.at("reason")};
+        }
+        return {false, "not listed"};
+    };
+    EXPECT_FALSE(relief_with("").first);
+    EXPECT_THAT(relief_with("").second, HasSubstr("pixels, less than 0.5"));
+    EXPECT_THAT(relief_with(" --height-bound 0.25").second, HasSubstr("pixels, less than 0.25"));
+    EXPECT_TRUE(relief_with(" --height-bound 0").first);
+    EXPECT_THAT(relief_with(" --height-bound 0").second, Not(HasSubstr("less than")));
+}
+
 TEST_F(EffectOptions, RefuseUnknownAndImpossibleEffects) {
     EXPECT_EQ(run("--effects +emision --explain-effects").error,
               "relief-view: error: --effects: 'emision' is not an effect; did you mean 'emission'? "

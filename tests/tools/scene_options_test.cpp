@@ -97,6 +97,7 @@ TEST(SceneOptions, AHeightMapDisplacesIfADepthOrAMethodIsGiven) {
     EXPECT_EQ(map->method, HeightMethod::relief_mapping);
     EXPECT_EQ(map->layers, 40);
     EXPECT_FALSE(map->self_shadow || map->write_depth);
+    EXPECT_EQ(map->bound, 0.5F);
     EXPECT_EQ(map->silhouette, ReliefSilhouette::none);
     EXPECT_EQ(scene.images.at(map->texture.image).name, "h.png");
     options.relief_fields.set(&ReliefMap::method, HeightMethod::relaxed_cones);

@@ -265,6 +265,12 @@ TEST(SequenceRefusal, StatesTheReasonAndWritesNoFile) {
          {"square.obj --output out/old.png --height-map h.png --height-method parallax "
           "--height-steps 8",
           2, "--height-steps: applies to maximum mipmaps"},
+         {"square.obj --output out/old.png --height-map h.png --height-bound 1 --turntable 4", 2,
+          "--height-bound: applies to single pictures"},
+         {"square.obj --output out/old.html --height-map h.png --height-bound 1", 2,
+          "--height-bound: applies to single pictures"},
+         {"square.obj --output out/old.png --height-map h.png --height-bound -1", 2,
+          "--height-bound -1: not between 0 and "},
          {"square.obj --output out/old.png --height-map h.png --height-shadow maybe", 2,
           "--height-shadow"},
          {"square.obj --output out/old.png --height-map h.png --height-depth 8 --cone-map c.png", 2,

@@ -112,6 +112,11 @@ void add_relief_options(CLI::App& app, ViewOptions& options) {
               "Write the depth of the relief, so that other surfaces meet it where it is seen. "
               "Default: off.")
         .group(maps_group);
+    add_field(
+        app, fields, "--height-bound", "PIXELS", &ReliefMap::bound,
+        "Leave out the displacement, its shadows, silhouette and depth where they change less "
+        "than PIXELS of a single picture, from 0, which leaves out nothing. Default: 0.5.")
+        .group(maps_group);
     add_path(app, "--cone-map", options.cone_map,
              "Read the cone map of the height map from FILE, which relaxed cones need.")
         .group(maps_group);

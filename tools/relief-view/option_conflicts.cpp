@@ -283,6 +283,11 @@ const Conflict conflicts[] = {
                                 HeightMethod::relaxed_cones>(o);
      },
      "applies to maximum mipmaps", "choose another --height-method, or leave it out"},
+    {"--height-bound",
+     [](const Options& o) {
+         return o.relief_fields.has(&ReliefMap::bound) && (is_page(o) || is_sequence(o));
+     },
+     "applies to single pictures: others have all reliefs", drop_it},
     {"--cone-map",
      [](const Options& o) {
          const auto method = relief_method(o);

@@ -211,9 +211,6 @@ struct ReliefBounds {
                           ///< infinite if light arrives along the surface or from below it.
 };
 
-/// The least of these bounds for which an effect of the relief is planned.
-inline constexpr double min_relief_pixels = 0.5;
-
 /// The input of the decisions for one draw.
 struct DrawSubject {
     const Scene& scene;

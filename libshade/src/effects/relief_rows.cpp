@@ -48,9 +48,10 @@ Decision by_bound(Subject s, double ReliefBounds::*bound, const std::string& wha
     if (!s.relief) return {true, s.name + " has a relief, seen from any distance"};
     const double pixels = (*s.relief).*bound;
     if (std::isinf(pixels)) return {true, fmt::format("the relief of {} reaches the eye", s.name)};
-    const bool on = pixels >= min_relief_pixels;
+    const float least = s.material.height_map->bound;
+    const bool on = pixels >= static_cast<double>(least);
     return {on, fmt::format("{} {:.2g} pixels{}{}", what, pixels, how,
-                            on ? "" : fmt::format(", less than {}", min_relief_pixels))};
+                            on ? "" : fmt::format(", less than {}", least))};
 }
 
 Decision of_self_shadow(Subject s) {

@@ -267,6 +267,8 @@ const char* format_of(FieldUnit unit, float max) {
             return "%.0f deg";
         case FieldUnit::texels:
             return "%.1f texels";
+        case FieldUnit::pixels:
+            return "%.2f pixels";
         case FieldUnit::nanometers:
             return "%.0f nm";
         default:

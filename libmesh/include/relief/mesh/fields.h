@@ -38,6 +38,7 @@ enum class FieldUnit {
     none,   ///< A factor, an exponent, a flag, a name.
     color,  ///< Linear red, green and blue; with a fourth component: alpha, from 0 to 1.
     texels,
+    pixels,  ///< Of the picture.
     nanometers,
     world_length,
     world_position,

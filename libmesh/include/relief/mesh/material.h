@@ -123,6 +123,9 @@ struct ReliefMap {
     /// The depth buffer gets the depth of the relief, so that other surfaces meet it where it is
     /// seen.
     bool write_depth = false;
+    /// Effects of the relief are planned from this bound on, in pixels, where there is one camera.
+    /// From 0, which plans them for every relief that has a depth.
+    float bound = 0.5F;
 };
 
 /// glTF's metallic-roughness model. In a Material it replaces Phong's ambient, diffuse, specular,
@@ -299,7 +302,9 @@ inline constexpr auto fields_of<ReliefMap> = std::tuple{
     SceneField{"cones", &ReliefMap::cones, {}, {}, "cone map"},
     SceneField{"self_shadow", &ReliefMap::self_shadow, {}, {}, "relief self-shadow"},
     SceneField{"silhouette", &ReliefMap::silhouette, {}, {}, "relief silhouette"},
-    SceneField{"write_depth", &ReliefMap::write_depth, {}, {}, "relief depth buffer"}};
+    SceneField{"write_depth", &ReliefMap::write_depth, {}, {}, "relief depth buffer"},
+    SceneField{"bound", &ReliefMap::bound, {0, 1e6F}, FieldUnit::pixels, "relief bound"}.on_slider(
+        {0, 4})};
 
 /// Returns the description of a factor of glTF's model.
 /// \param gltf  its path in a material of glTF
