@@ -20,8 +20,27 @@ void pass_shadow() {}
 
 in vec4 shadow_place;
 
+vec4 place_seen() { return shadow_place; }
+
+//@part displaced_place implements shadow_place
+// Fragment stage: the place of the point of the relief that the view meets (height_march.glsl). It is
+// beyond the surface by a multiple of the vector to the eye.
+
+//@include "inputs.glsl#eye"
+
+in vec4 shadow_place;
+
+uniform mat4 shadow_from_world;
+
+vec4 place_seen() {
+    vec3 nearer = view_texels.z * relief_depth * to_eye(position_world);
+    return shadow_place - shadow_from_world * vec4(nearer, 0.0);
+}
+
 //@neutral shadow_place
 // The vertex stage has written shadow_place in pass_shadow().
+
+vec4 place_seen() { return shadow_place; }
 
 //@part visible_share
 // The share of the main light that reaches the surface. The surface is lifted along its normal, so
@@ -36,7 +55,7 @@ uniform vec4 shadow_points[8];  // Two places on the light in each.
 uniform sampler2DArrayShadow shadow_maps;
 
 float visible_share(Surface surface) {
-    vec4 place = shadow_place + shadow_lift * vec4(surface.normal_world, 0.0);
+    vec4 place = place_seen() + shadow_lift * vec4(surface.normal_world, 0.0);
     vec3 middle = place.xyz / place.w;
     float shift = dot(shadow_shift, place.zw) / place.w;
     float share = 0.0;

@@ -38,6 +38,7 @@ void drop_depth_mapping(Features& f) {
         is_displaced(f) && light_count(f) > 0 && f.interpolation != Interpolation::gouraud;
     f.clipped_relief &= is_displaced(f) && clamped;
     f.written_depth &= is_displaced(f);
+    f.displaced_shadow &= f.written_depth;
     if (!shows_displacement(f)) f.depth_mapping = DepthMapping::none;
     if (!has_height_wraps(f)) f.height_wrap_u = f.height_wrap_v = Wrap::repeat;
 }
@@ -242,8 +243,10 @@ Features data_features(const Features& f) {
     kept.output = OutputCoding::linear;
     keep_deformation(f, kept);
     keep_mask(f, kept);
-    // Shadow maps count fragments, too, and see the surface from the light.
-    if (f.view != DebugView::overdraw) keep_depth_mapping(f, kept);
+    // Shadow maps count fragments, too: the ray of view is then that of the light.
+    kept.displaced_shadow =
+        f.view == DebugView::overdraw && f.displaced_shadow && f.written_depth && is_displaced(f);
+    if (f.view != DebugView::overdraw || kept.displaced_shadow) keep_depth_mapping(f, kept);
     switch (f.view) {
         case DebugView::geometric_normal:
             kept.interpolation = Interpolation::flat;
@@ -316,9 +319,17 @@ Features canonical(Features f) {
     drop_dependents(f);
     drop_alpha(f);
     drop_tone(f);
+    f.displaced_shadow &= f.shadow != ShadowTerm::none;
     drop_depth_mapping(f);
     drop_second_texcoords(f);
     return f;
+}
+
+Features detail::casting_features(Features f) {
+    f.view = DebugView::overdraw;
+    // Exact hits, so that the points that a method of the view meets are compared with the relief.
+    if (f.displaced_shadow) f.depth_mapping = DepthMapping::maximum_mipmaps;
+    return canonical(f);
 }
 
 bool detail::shows_displacement(const Features& f) {

@@ -176,6 +176,7 @@ std::string show_view(const Drawn& drawn, DebugView view, DrawPlan& draw) {
                                   view == DebugView::shading_normal;
     if (shows_maps_frame) f.frame = drawn.material.tangent_frame;
     f.view = reason.empty() || is_term(view) ? view : DebugView::nothing_to_show;
+    if (view == DebugView::overdraw) f.displaced_shadow = false;
     f = canonical(f);
     const PlannedInterface planned = planned_interface(f);
     draw.needs_tangents = drawn.mesh.tangents.empty() &&

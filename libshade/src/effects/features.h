@@ -179,8 +179,12 @@ bool shows_displacement(const Features& f);
 
 /// True if the program has the wrap modes of the height map.
 inline bool has_height_wraps(const Features& f) {
-    return f.depth_mapping == DepthMapping::maximum_mipmaps || f.self_shadow || f.clipped_relief;
+    return f.depth_mapping == DepthMapping::maximum_mipmaps || f.self_shadow || f.clipped_relief ||
+           f.displaced_shadow;
 }
+
+/// Returns the features of the program that draws the depth of a draw into the shadow maps.
+Features casting_features(Features features);
 
 /// Sets the wrap modes of the material's height map, if the program has them.
 void set_height_wraps(const Material& material, Features& f);

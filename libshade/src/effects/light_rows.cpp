@@ -180,10 +180,13 @@ std::vector<glm::dvec2> disc_points() {
 }  // namespace
 
 glm::dvec3 ShadowView::to_light(const glm::dvec3& position_world, const glm::dvec2& point) const {
-    const glm::dvec3 disc = point.x * right_world + point.y * up_world;
-    if (light_world.w != 0.0) return glm::dvec3(light_world) + disc - position_world;
-    return (glm::dvec3(light_world) + disc) *
-           (radius + glm::distance(position_world, center_world));
+    const glm::dvec3 light(homogeneous_light(point));
+    if (light_world.w != 0.0) return light - position_world;
+    return light * (radius + glm::distance(position_world, center_world));
+}
+
+glm::dvec4 ShadowView::homogeneous_light(const glm::dvec2& point) const {
+    return light_world + glm::dvec4(point.x * right_world + point.y * up_world, 0.0);
 }
 
 glm::dmat4 ShadowView::clip_from_world(const glm::dvec2& point) const {

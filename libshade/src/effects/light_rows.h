@@ -87,6 +87,8 @@ struct ShadowView {
     [[nodiscard]] glm::dvec3 to_light(const glm::dvec3& position_world,
                                       const glm::dvec2& point) const;
     [[nodiscard]] glm::dmat4 clip_from_world(const glm::dvec2& point) const;
+    /// Returns the position of a point of the light, or if w is 0, the direction to it.
+    [[nodiscard]] glm::dvec4 homogeneous_light(const glm::dvec2& point) const;
 };
 
 /// Returns the shadow of a scene; nothing if no light casts one, as Shadow says.

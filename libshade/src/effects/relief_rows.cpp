@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rows of the table of effects that belong to a relief: its methods, its shadows on itself, its
-// silhouette and its depth. They are planned by bounds in pixels. Pure.
+// silhouette, its depth, and that in shadow maps. They are planned by bounds in pixels. Pure.
 // Tests: tests/shade/render/depth_mapping_test.cpp, relief_effects_test.cpp.
 #include <fmt/format.h>
 
@@ -76,6 +76,15 @@ Decision of_written_depth(Subject s) {
                     " deep");
 }
 
+/// Shadow maps have the depth of the relief where the view has it.
+Decision of_displaced_shadow(Subject s) {
+    const Decision written = of_written_depth(s);
+    if (!written.on) return written;
+    if (s.material.unlit) return {false, s.name + " is unlit"};
+    if (s.lights.shadow == ShadowTerm::none) return {false, "no light casts a shadow"};
+    return {true, "the shadow of the main light meets the relief of " + s.name};
+}
+
 Decision of_clipped_relief(Subject s) {
     const std::string missing = missing_relief(s);
     if (!missing.empty()) return {false, missing};
@@ -83,8 +92,11 @@ Decision of_clipped_relief(Subject s) {
     if (map.silhouette == ReliefSilhouette::none) return {false, s.name + " does not request it"};
     if (map.texture.wrap_u != Wrap::clamp && map.texture.wrap_v != Wrap::clamp)
         return {false, fmt::format("the height map of {} has no border: it repeats", s.name)};
-    return by_bound(s, &ReliefBounds::shift,
-                    fmt::format("the relief of {} moves its border by at most", s.name));
+    const Decision moved =
+        by_bound(s, &ReliefBounds::shift,
+                 fmt::format("the relief of {} moves its border by at most", s.name));
+    if (moved.on || !of_displaced_shadow(s).on) return moved;
+    return {true, s.name + " casts the shadow of its relief"};
 }
 
 /// Depth mapping is planned where it moves what is seen, and where an effect shows the depth of the
@@ -155,6 +167,13 @@ std::vector<EffectRow> detail::relief_rows() {
          .only_by_name = true},
         {.effect = one_switch<&F::written_depth>("written depth", "no relief is displaced"),
          .decide = of_written_depth,
+         .choice = "the depth of a relief is the material's choice",
+         .neutral =
+             [](Forced s) { return s.material.height_map && s.material.height_map->write_depth; },
+         .only_by_name = true},
+        {.effect = one_switch<&F::displaced_shadow>(
+             "displaced shadow", "no relief writes its depth, or no light casts a shadow"),
+         .decide = of_displaced_shadow,
          .choice = "the depth of a relief is the material's choice",
          .neutral =
              [](Forced s) { return s.material.height_map && s.material.height_map->write_depth; },

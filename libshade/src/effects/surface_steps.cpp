@@ -433,7 +433,8 @@ void choose_lit_surface(ShaderSteps& steps, By f) {
     choose(steps, {{"light.glsl#all", lights_here},
                    {"gouraud.glsl#interpolated", is_gouraud(f) && !both_sides},
                    {"gouraud.glsl#interpolated_both_sides", both_sides},
-                   {"shadow.glsl#place", lights_here && has_shadow(f)},
+                   {"shadow.glsl#place", lights_here && has_shadow(f) && !f.displaced_shadow},
+                   {"shadow.glsl#displaced_place", lights_here && f.displaced_shadow},
                    {"phong.glsl#clamped_terms", f.clamped_terms && adds_terms}});
     choose_surface(steps, f, fragment_needs(f));
     choose_dielectric(steps, f);

@@ -25,7 +25,7 @@ using namespace relief::shade::detail;
 namespace {
 
 /// The uniforms whose values depend on the camera, on an instance or on the time.
-constexpr std::array<std::string_view, 16> moving_values = {"clip_from_object",
+constexpr std::array<std::string_view, 17> moving_values = {"clip_from_object",
                                                             "clip_from_world",
                                                             "eye_world",
                                                             "world_from_object",
@@ -36,6 +36,7 @@ constexpr std::array<std::string_view, 16> moving_values = {"clip_from_object",
                                                             "joint_pairs",
                                                             "morph_layout",
                                                             "shadow_from_object",
+                                                            "shadow_from_world",
                                                             "shadow_lift",
                                                             "shadow_shift",
                                                             "shadow_samples",
@@ -192,10 +193,8 @@ PageDraw PageRecorder::Implementation::record(const PreparedScene& renderer, con
     result.program =
         content.program(surface_page_program(renderer, f, shows_samples), texts_of(renderer));
     if (renderer.plan.shadow_maps && draw.surface->casts_shadow) {
-        Features depth_only = f;
-        depth_only.view = DebugView::overdraw;
         result.shadow_program = content.program(
-            surface_page_program(renderer, canonical(depth_only), false), texts_of(renderer));
+            surface_page_program(renderer, casting_features(f), false), texts_of(renderer));
     }
     result.instance = draw.instance;
     result.first_triangle = draw.range.first_triangle;
@@ -203,12 +202,19 @@ PageDraw PageRecorder::Implementation::record(const PreparedScene& renderer, con
     result.both_sides = draw.surface->both_sides;
     result.lights = {f.directional_lights, f.point_lights, f.spot_lights, f.highlight_colors};
 
-    renderer.use_program(*draw.program, draw, glm::dmat4(1.0), nullptr);
+    renderer.use_program(*draw.program, draw, glm::dmat4(1.0), std::nullopt);
     renderer.bind_textures(draw);
     renderer.environment->bind(renderer.api);
     const gl::LinkedProgram& linked = draw.program->linked;
     PageSurface surface;
     surface.values = content.values(linked, moving_values);
+    if (f.displaced_shadow) {
+        // The march from the light has settings that another method of the view lacks.
+        const auto casting = renderer.linked.get(casting_features(f));
+        renderer.use_program(*casting, draw, glm::dmat4(1.0), std::nullopt);
+        surface.values.merge(content.values(casting->linked, moving_values));
+        draw.program->linked.use();
+    }
     // The page multiplies it by the last level of its own size.
     if (const auto level = surface.values.find("blurred_level"); level != surface.values.end())
         level->second.front() /= static_cast<float>(std::max(renderer.picture.last_level(), 1));

@@ -113,12 +113,22 @@ double alpha_at(const Context& context) {
 
 namespace {
 
-/// Tells whether a surface between a point and the light blocks it.
-bool blocks(const PreparedScene& prepared, const Hit& hit, Trace& trace) {
+/// Tells whether a surface between a point and the light blocks it. The point is in front of a
+/// relief that the light meets beyond it.
+bool blocks(const PreparedScene& prepared, const Hit& hit, const glm::dvec3& point_world,
+            const glm::dvec3& to_light_world, Trace& trace) {
     const Material& material = prepared.material_of(hit.instance, hit.triangle);
     if (!casts_shadow(material)) return false;
-    if (material.alpha_mode == AlphaMode::opaque) return true;
-    const Surface surface = surface_at(prepared, hit, material, trace, false);
+    const bool is_opaque = material.alpha_mode == AlphaMode::opaque;
+    if (is_opaque && !has_displaced_shadow(material)) return true;
+    const Surface surface = surface_at(prepared, hit, material, trace, &to_light_world);
+    if (is_clipped(material, surface)) return false;
+    if (surface.relief) {
+        const glm::dvec3 nearer = surface.relief->beyond * to_light_world;
+        const glm::dvec3 relief_world = surface.position_world - nearer;
+        if (glm::dot(relief_world - point_world, to_light_world) <= 0.0) return false;
+    }
+    if (is_opaque) return true;
     return alpha_at({prepared, material, surface, trace}) >=
            static_cast<double>(material.alpha_cutoff);
 }
@@ -127,13 +137,17 @@ bool blocks(const PreparedScene& prepared, const Hit& hit, Trace& trace) {
 double visible_share(const Context& context, const Surface& at) {
     const ShadowCasters& shadow = *context.prepared.shadow;
     const ShadowView& view = shadow.view();
-    const glm::dvec3 lifted = at.position_world + view.lift * at.normal_world;
+    glm::dvec3 position_world = at.position_world;
+    if (at.relief && has_displaced_shadow(context.material))
+        position_world -= at.relief->beyond * at.relief->outward_world;
+    const glm::dvec3 lifted = position_world + view.lift * at.normal_world;
     const Trace::Unrecorded pause(context.trace);  // What occludes is not on the pixel's ray.
     double visible = 0.0;
     for (const glm::dvec2& point : view.points) {
         const std::vector<Hit> hits = shadow.between(lifted, point);
         const bool blocked = std::any_of(hits.begin(), hits.end(), [&](const Hit& hit) {
-            return blocks(context.prepared, hit, context.trace);
+            return blocks(context.prepared, hit, lifted, view.to_light(lifted, point),
+                          context.trace);
         });
         context.trace.decide(blocked ? 1 : 0);
         if (!blocked) visible += 1.0;

@@ -181,6 +181,7 @@ constexpr std::array all_effects = {
     E{"self-shadow", R::factor, "L"},
     E{"clipped relief", R::coverage},
     E{"written depth", R::storage},
+    E{"displaced shadow", R::factor, "L"},
     E{"directional lights", R::term, "diffuse"},
     E{"point lights", R::term, "diffuse"},
     E{"spot lights", R::term, "diffuse"},

@@ -342,7 +342,8 @@ struct ReliefHit {
     double black_depth = 0.0;          ///< In texels.
     glm::dvec2 texcoord_surface{0.0};  ///< Of the surface above it.
     glm::dvec2 texcoord{0.0};
-    /// How far the point is beyond that of the surface: a multiple of the vector to the eye.
+    glm::dvec3 outward_world{0.0};  ///< Against the ray: the vector to the eye or to the light.
+    /// How far the point is beyond that of the surface: a multiple of that vector.
     double beyond = 0.0;
     glm::dvec3 normal_world{0.0};   ///< Of the surface, as interpolated; unit.
     glm::dvec3 along_x_world{0.0};  ///< The edges of a texel.
@@ -376,9 +377,10 @@ bool is_transmissive(const Material& material, const Mesh& mesh);
 /// Tells whether the hit shows the back of its triangle.
 bool is_back(const PreparedScene& prepared, const Hit& hit);
 
-/// \param from_eye  false: as light sees it, without the displacement by a relief
+/// \param to_light_world  null: the eye sees it. Otherwise the light in that direction, for which
+///                        only reliefs that write their depth are displaced
 Surface surface_at(const PreparedScene& prepared, const Hit& hit, const Material& material,
-                   Trace& trace, bool from_eye = true);
+                   Trace& trace, const glm::dvec3* to_light_world = nullptr);
 
 /// Returns the surface at a corner of the triangle that was hit, for light computed at vertices. No
 /// map bends its normal.
@@ -389,6 +391,11 @@ Surface surface_at_corner(const PreparedScene& prepared, const Hit& hit, int cor
 /// Tells whether the relief hides light from the point that the view meets.
 /// \param light_world  unit, to the light
 bool is_shadowed(const ReliefHit& relief, const glm::dvec3& light_world);
+
+/// True if shadows meet the relief of a material instead of the surface.
+inline bool has_displaced_shadow(const Material& material) {
+    return material.height_map && material.height_map->write_depth;
+}
 
 /// Tells whether the view leaves the material's height map where it is clamped, so that nothing is
 /// drawn.

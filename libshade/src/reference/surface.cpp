@@ -588,13 +588,14 @@ glm::dvec3 vector_to_eye(const PreparedScene& prepared, const glm::dvec3& positi
     return glm::dvec3(prepared.eye_world) - prepared.eye_world.w * position_world;
 }
 
-/// Returns where the view meets the relief under a point of the surface; none if it does not.
+/// Returns where a ray meets the relief under a point of the surface; none if it does not.
+/// \param outward_world  against the ray: the vector to the eye, or to a light
 std::optional<ReliefHit> relief_hit(const PreparedScene& prepared, const Hit& hit,
-                                    const Material& material, const Surface& surface) {
+                                    const Material& material, const Surface& surface,
+                                    const glm::dvec3& outward_world) {
     std::optional<ReliefHit> relief = relief_frame(prepared, hit, material);
     if (!relief) return std::nullopt;
-    const glm::dvec3 view = vector_to_eye(prepared, surface.position_world);
-    const auto along = texels_per_depth(*relief, view);
+    const auto along = texels_per_depth(*relief, outward_world);
     if (!along) return std::nullopt;
     HeightRay ray;
     ray.texcoord = surface.texcoord;
@@ -603,14 +604,16 @@ std::optional<ReliefHit> relief_hit(const PreparedScene& prepared, const Hit& hi
     const HeightHit met = relief->field->first_hit(ray);
     relief->texcoord_surface = surface.texcoord;
     relief->texcoord = met.texcoord;
-    relief->beyond = met.depth * relief->texel_world / glm::dot(relief->normal_world, view);
+    relief->outward_world = outward_world;
+    relief->beyond =
+        met.depth * relief->texel_world / glm::dot(relief->normal_world, outward_world);
     return relief;
 }
 
-/// Moves the texture coordinates of a surface to where the view meets its relief.
+/// Moves the texture coordinates of a surface to where a ray meets its relief.
 void displace(const PreparedScene& prepared, const Hit& hit, const Material& material,
-              Surface& surface) {
-    surface.relief = relief_hit(prepared, hit, material, surface);
+              const glm::dvec3& outward_world, Surface& surface) {
+    surface.relief = relief_hit(prepared, hit, material, surface, outward_world);
     if (!surface.relief) return;
     const glm::dvec2 moved = surface.relief->texcoord - surface.texcoord;
     surface.texcoord += moved;
@@ -666,9 +669,12 @@ bool is_back(const PreparedScene& prepared, const Hit& hit) {
 }
 
 Surface surface_at(const PreparedScene& prepared, const Hit& hit, const Material& material,
-                   Trace& trace, bool from_eye) {
+                   Trace& trace, const glm::dvec3* to_light_world) {
     Surface surface = attributes_at(prepared, hit);
-    if (from_eye) displace(prepared, hit, material, surface);
+    if (to_light_world == nullptr)
+        displace(prepared, hit, material, vector_to_eye(prepared, surface.position_world), surface);
+    else if (has_displaced_shadow(material))
+        displace(prepared, hit, material, *to_light_world, surface);
     surface.normal_world = front_normal(prepared, hit, material, surface.texcoord, trace);
     Material coat;
     coat.interpolation = material.interpolation;
@@ -723,7 +729,9 @@ bool is_clipped(const Material& material, const Surface& surface) {
 
 void set_relief_depth(const PreparedScene& prepared, const Material& material, Hit& hit) {
     if (!material.height_map || !material.height_map->write_depth) return;
-    const auto relief = relief_hit(prepared, hit, material, attributes_at(prepared, hit));
+    const Surface surface = attributes_at(prepared, hit);
+    const auto relief = relief_hit(prepared, hit, material, surface,
+                                   vector_to_eye(prepared, surface.position_world));
     if (!relief) return;
     // An orthographic camera looks along a vector of any length.
     hit.depth +=

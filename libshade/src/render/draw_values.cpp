@@ -108,6 +108,7 @@ std::map<std::string_view, Setter> member_setters() {
         {"height_steps", set_member<&DrawValues::height_steps>},
         {"exposure", set_member<&DrawValues::exposure>},
         {"shadow_from_object", set_member<&DrawValues::shadow_from_object>},
+        {"shadow_from_world", set_member<&DrawValues::shadow_from_world>},
         {"shadow_lift", set_member<&DrawValues::shadow_lift>},
         {"shadow_shift", set_member<&DrawValues::shadow_shift>},
         {"shadow_samples", set_member<&DrawValues::shadow_samples>},
@@ -294,6 +295,7 @@ void set_shadow(DrawValues& values, const std::optional<ShadowView>& view,
     values.shadow_samples = 0;
     if (!view) return;
     values.shadow_from_object = glm::mat4(view->place_from_world * glm::dmat4(world_from_object));
+    values.shadow_from_world = glm::mat4(view->place_from_world);
     values.shadow_lift = glm::mat4(view->lift * view->place_from_world);
     values.shadow_shift = glm::vec2(view->shift);
     values.shadow_samples = static_cast<int>(view->points.size());

@@ -100,7 +100,8 @@ struct DrawValues {
     // These values describe the shadow maps (ShadowView). If there are no samples, nothing is in
     // shadow.
     glm::mat4 shadow_from_object{1.0F};  ///< To places in the maps.
-    glm::mat4 shadow_lift{0.0F};         ///< From the normal to the lift of a place.
+    glm::mat4 shadow_from_world{1.0F};
+    glm::mat4 shadow_lift{0.0F};  ///< From the normal to the lift of a place.
     glm::vec2 shadow_shift{0.0F};
     int shadow_samples = 0;
     std::array<glm::vec4, shadow_point_count / 2> shadow_points{};

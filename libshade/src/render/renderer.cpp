@@ -413,15 +413,17 @@ void PreparedScene::set_state(const Draw& draw) const {
     api->FrontFace(mirrors(draw.world_from_object) ? GL_CW : GL_CCW);
 }
 
-/// Sets the uniforms of a draw, except for that of the eye if there is no camera.
+/// Sets the uniforms of a draw.
+/// \param eye_world  homogeneous_eye(), or the light of a shadow map; none: it is not set
 void PreparedScene::use_program(const DrawProgram& program, const Draw& draw,
-                                const glm::dmat4& to_clip, const Camera* camera) const {
+                                const glm::dmat4& to_clip,
+                                const std::optional<glm::vec4>& eye_world) const {
     DrawValues values = draw.surface->values;
     set_place(values, draw.world_from_object);
     set_shadow(values, shadow, draw.world_from_object);
     values.clip_from_object = glm::mat4(to_clip * glm::dmat4(values.world_from_object));
     values.clip_from_world = glm::mat4(to_clip);
-    if (camera != nullptr) values.eye_world = homogeneous_eye(*camera);
+    if (eye_world) values.eye_world = *eye_world;
     if (const auto pose = poses.find(draw.instance); pose != poses.end()) {
         values.joint_pairs = pose->second.joint_pairs();
         values.morph_layout = pose->second.morph_layout();
@@ -432,7 +434,7 @@ void PreparedScene::use_program(const DrawProgram& program, const Draw& draw,
 }
 
 void PreparedScene::issue(Draw& draw, const glm::dmat4& to_clip, const Camera& camera) {
-    use_program(*draw.program, draw, to_clip, &camera);
+    use_program(*draw.program, draw, to_clip, homogeneous_eye(camera));
     bind_textures(draw);
     set_state(draw);
     if (!draw.sorted) {
@@ -549,23 +551,22 @@ void PreparedScene::prepare_shadow(const Scene& scene) {
 }
 
 /// Draws both sides of all surfaces that cast shadows into the maps. Their programs compute
-/// positions and the holes of masks only.
+/// positions, the holes of masks and the depth of reliefs only.
 void PreparedScene::draw_shadow_maps() {
     has_old_shadow = false;
     std::vector<std::pair<const Draw*, std::shared_ptr<const DrawProgram>>> casting;
     for (const Draw& draw : draws) {
         if (!draw.surface->casts_shadow) continue;
-        Features depth_only = draw.features;
-        depth_only.view = DebugView::overdraw;
-        casting.emplace_back(&draw, linked.get(canonical(depth_only)));
+        casting.emplace_back(&draw, linked.get(casting_features(draw.features)));
     }
     api->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     api->Disable(GL_CULL_FACE);
     for (std::size_t i = 0; i < shadow->points.size(); ++i) {
         shadow_maps->begin(static_cast<int>(i));
         const glm::dmat4 to_clip = shadow->clip_from_world(shadow->points[i]);
+        const glm::vec4 light_world(shadow->homogeneous_light(shadow->points[i]));
         for (const auto& [draw, program] : casting) {
-            use_program(*program, *draw, to_clip, nullptr);
+            use_program(*program, *draw, to_clip, light_world);
             bind_textures(*draw);
             meshes.at(draw->mesh)->draw(api, draw->range);
         }

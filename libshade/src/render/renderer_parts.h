@@ -130,7 +130,7 @@ struct PreparedScene {
     void bind_textures(const Draw& draw) const;
     void set_state(const Draw& draw) const;
     void use_program(const DrawProgram& program, const Draw& draw, const glm::dmat4& to_clip,
-                     const Camera* camera) const;
+                     const std::optional<glm::vec4>& eye_world) const;
     void issue(Draw& draw, const glm::dmat4& to_clip, const Camera& camera);
     void draw_range(const Draw& draw);
     void in_bands(const std::function<void()>& draw_band);

@@ -152,6 +152,7 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::self_shadow>("self-shadow"),
         field<&F::clipped_relief>("clipped relief"),
         field<&F::written_depth>("written depth"),
+        field<&F::displaced_shadow>("displaced shadow"),
         field<&F::ambient>("ambient"),
         field<&F::directional_lights, 3>("directional lights"),
         field<&F::point_lights, 3>("point lights"),
@@ -433,6 +434,7 @@ Features attainable(Features f) {
                    : f.spot_lights > 0        ? ShadowTerm::spot_light
                                               : ShadowTerm::point_light;
     }
+    f.displaced_shadow = f.written_depth && f.shadow != ShadowTerm::none;
     if ((f.alpha == AlphaMode::blend || f.transmission) && f.output != OutputCoding::linear) {
         f.output = OutputCoding::half;
     }

@@ -18,6 +18,7 @@
 #include "relief/shade/reference.h"
 #include "relief/shade/renderer.h"
 #include "shade/render/draw_support.h"
+#include "shade/render/relief_scenes.h"
 
 namespace relief {
 using namespace relief::shade;
@@ -27,51 +28,6 @@ namespace {
 using testing::HasSubstr;
 
 constexpr int pixels = 160;
-constexpr int map_side = 64;  // Along the sides of the square, which are 4 long.
-constexpr double texel = 4.0 / map_side;
-
-/// A camera that looks at the origin at an angle from the z axis, from below.
-Camera slanted(double degrees) {
-    const double angle = glm::radians(degrees);
-    const glm::dvec3 eye(0.0, -6.0 * std::sin(angle), 6.0 * std::cos(angle));
-    Camera camera;
-    camera.world_from_view =
-        glm::mat4(glm::inverse(glm::lookAt(eye, glm::dvec3(0.0), glm::dvec3(0.0, 1.0, 1e-9))));
-    camera.vertical_fov = 0.6F;
-    return camera;
-}
-
-/// The same without perspective: the square's sides fill the picture.
-Camera parallel(double degrees) {
-    Camera camera = slanted(degrees);
-    camera.orthographic_height = 4.0F;
-    return camera;
-}
-
-Image heights_by(const std::function<double(int x, int y)>& height) {
-    Image image = make_image(map_side, map_side, 1, 16, ColorSpace::data);
-    for (int y = 0; y < map_side; ++y) {
-        for (int x = 0; x < map_side; ++x)
-            image.as<std::uint16_t>()[static_cast<std::size_t>(y * map_side + x)] =
-                static_cast<std::uint16_t>(65535.0 * height(x, y) + 0.5);
-    }
-    return image;
-}
-
-Image bumps() {
-    return heights_by([](int x, int y) {
-        return 0.5 + 0.3 * std::sin(0.59 * x + 0.1 * y) + 0.2 * std::sin(0.41 * y - 0.23 * x + 1.0);
-    });
-}
-
-/// A wall on the left, whose floor begins at this column.
-Image wall(int floor) {
-    return heights_by([=](int x, int /*y*/) { return x < floor ? 1.0 : 0.0; });
-}
-
-Image black() {
-    return heights_by([](int, int) { return 0.0; });
-}
 
 /// A gray square with a relief under a light.
 Scene square(const Image& heights, const Camera& camera, float depth) {
@@ -92,15 +48,6 @@ Scene square(const Image& heights, const Camera& camera, float depth) {
 
 ReliefMap& map_of(Scene& scene) {
     return *scene.materials[0].height_map;
-}
-
-/// Light from the left, at an angle to the z axis.
-DirectionalLight from_the_left(double degrees) {
-    const double angle = glm::radians(degrees);
-    DirectionalLight light;
-    light.direction_world = glm::vec3(glm::dvec3(std::sin(angle), 0.0, -std::cos(angle)));
-    light.irradiance = glm::vec3(1.0F);
-    return light;
 }
 
 FramePlan plan_of(const Scene& scene) {
@@ -161,7 +108,7 @@ int darker(const Image& image, double value, int column, bool along_x) {
 // Self-shadows
 
 TEST_F(ReliefEffects, SelfShadowsAreThoseOfTheReference) {
-    Scene scene = square(bumps(), slanted(40.0), 5.0F);
+    Scene scene = square(test::bumpy_heights(), test::slanted_camera(40.0), 5.0F);
     map_of(scene).self_shadow = true;
     PointLight point;
     point.position_world = {-1.5F, 0.4F, 0.9F};
@@ -171,11 +118,11 @@ TEST_F(ReliefEffects, SelfShadowsAreThoseOfTheReference) {
     spot.point.intensity = glm::vec3(4.0F);
     spot.direction_world = {-0.4F, -0.7F, -0.6F};
     spot.outer_cone = 0.5F;
-    const auto add_sun = [](Scene& s) { s.directional_lights = {from_the_left(65.0)}; };
+    const auto add_sun = [](Scene& s) { s.directional_lights = {test::light_from_the_left(65.0)}; };
     const auto add_point = [&](Scene& s) { s.point_lights = {point}; };
     const auto add_spot = [&](Scene& s) { s.spot_lights = {spot}; };
     const auto add_all = [&](Scene& s) {
-        s.directional_lights = {from_the_left(65.0), from_the_left(-75.0)};
+        s.directional_lights = {test::light_from_the_left(65.0), test::light_from_the_left(-75.0)};
         s.point_lights = {point};
         s.spot_lights = {spot};
         s.shadow.emplace();
@@ -211,13 +158,13 @@ TEST_F(ReliefEffects, SelfShadowsAreThoseOfTheReference) {
 /// Coordinates that are mirrored and stretched on the triangle, and another reflection model.
 TEST_F(ReliefEffects, SelfShadowsFollowStretchedCoordinates) {
     for (const glm::vec2 scale : {glm::vec2(-1.0F, 1.0F), {1.0F, -0.5F}, {0.4F, 1.5F}}) {
-        Scene scene = square(bumps(), slanted(30.0), 4.0F);
+        Scene scene = square(test::bumpy_heights(), test::slanted_camera(30.0), 4.0F);
         map_of(scene).self_shadow = true;
         map_of(scene).texture.wrap_u = map_of(scene).texture.wrap_v = Wrap::repeat;
         scene.materials[0].metallic_roughness.emplace().metallic = 0.0F;
         for (glm::vec2& texcoord : scene.meshes[0].edit().texcoords)
             texcoord *= scale;
-        scene.directional_lights = {from_the_left(60.0)};
+        scene.directional_lights = {test::light_from_the_left(60.0)};
         EXPECT_LT(differing(scene), 0.005) << scale.x << ", " << scale.y;
     }
 }
@@ -228,16 +175,16 @@ TEST_F(ReliefEffects, AWallsShadowIsAsLongAsATangent) {
     constexpr int floor = 16;
     constexpr float depth = 12.0F;
     for (const double degrees : {45.0, 60.0, 70.0}) {
-        Scene scene = square(wall(floor), parallel(0.0), depth);
+        Scene scene = square(test::wall_heights(floor), test::parallel_camera(0.0), depth);
         map_of(scene).self_shadow = true;
-        scene.directional_lights = {from_the_left(degrees)};
+        scene.directional_lights = {test::light_from_the_left(degrees)};
         EXPECT_THAT(reason_of(scene, "maximum mipmaps").reason, HasSubstr("shows the shadows"));
         const Image image = drawn(scene);
         // The wall's flank, between the last texel of the wall and the first one of the floor, is
         // turned away from the light, and dark. The shadow begins at its upper edge.
         const double length = static_cast<double>(depth) * (1.0 - HeightField::shadow_lift) *
                               std::tan(glm::radians(degrees));
-        const double expected = length * pixels / map_side;
+        const double expected = length * pixels / test::relief_map_side;
         const double dark = 0.2 * 0.5 + 0.01;
         for (const int row : {10, 80, 150})
             EXPECT_NEAR(darker(image, dark, row, true), expected, 1.0) << degrees;
@@ -251,9 +198,9 @@ TEST_F(ReliefEffects, AWallsShadowIsAsLongAsATangent) {
 /// The second ray is exact for every method of the first one: on a wall seen from straight above,
 /// all pictures are the same.
 TEST_F(ReliefEffects, SelfShadowsOfAllMethodsAreExact) {
-    Scene scene = square(wall(20), parallel(0.0), 10.0F);
+    Scene scene = square(test::wall_heights(20), test::parallel_camera(0.0), 10.0F);
     map_of(scene).self_shadow = true;
-    scene.directional_lights = {from_the_left(60.0)};
+    scene.directional_lights = {test::light_from_the_left(60.0)};
     const Image exact = drawn(scene);
     for (const HeightMethod method :
          {HeightMethod::parallax, HeightMethod::parallax_occlusion, HeightMethod::relief_mapping}) {
@@ -263,9 +210,9 @@ TEST_F(ReliefEffects, SelfShadowsOfAllMethodsAreExact) {
 }
 
 TEST_F(ReliefEffects, SelfShadowsAreLeftOutWhereTheyCannotShow) {
-    Scene scene = square(bumps(), slanted(40.0), 5.0F);
+    Scene scene = square(test::bumpy_heights(), test::slanted_camera(40.0), 5.0F);
     scene.materials[0].diffuse_texture = Texture{0};
-    scene.directional_lights = {from_the_left(60.0)};
+    scene.directional_lights = {test::light_from_the_left(60.0)};
     EXPECT_THAT(reason_of(scene, "self-shadow").reason, HasSubstr("does not request it"));
     const Image without = drawn(scene);
     map_of(scene).self_shadow = true;
@@ -274,7 +221,7 @@ TEST_F(ReliefEffects, SelfShadowsAreLeftOutWhereTheyCannotShow) {
     EXPECT_TRUE(
         test::same_bits(drawn(scene, {EffectBase::planned, {{"self-shadow", false}}}), without));
     // A texel is 2 to 3 pixels long: at 1 degree, 5 texels of depth throw a shadow of 0.2 pixels.
-    scene.directional_lights = {from_the_left(1.0)};
+    scene.directional_lights = {test::light_from_the_left(1.0)};
     EXPECT_FALSE(reason_of(scene, "self-shadow").on);
     EXPECT_THAT(reason_of(scene, "self-shadow").reason, HasSubstr("on itself, less than 0.5"));
     EXPECT_TRUE(plan_of(scene).draws[0].features.depth_mapping == DepthMapping::maximum_mipmaps);
@@ -283,9 +230,9 @@ TEST_F(ReliefEffects, SelfShadowsAreLeftOutWhereTheyCannotShow) {
     EXPECT_TRUE(test::same_bits(drawn(scene), left_out));
     map_of(scene).self_shadow = true;
     // Light along the surface reaches it nowhere.
-    scene.directional_lights = {from_the_left(90.0)};
+    scene.directional_lights = {test::light_from_the_left(90.0)};
     EXPECT_THAT(reason_of(scene, "self-shadow").reason, HasSubstr("grazes the relief"));
-    scene.directional_lights = {from_the_left(60.0)};
+    scene.directional_lights = {test::light_from_the_left(60.0)};
     map_of(scene).depth = 0.0F;
     const Features planned = plan_of(scene).draws[0].features;
     EXPECT_FALSE(planned.self_shadow);
@@ -299,7 +246,7 @@ TEST_F(ReliefEffects, SelfShadowsAreLeftOutWhereTheyCannotShow) {
 TEST_F(ReliefEffects, SilhouettesEndWhereTheViewLeavesTheMap) {
     constexpr float depth = 8.0F;
     for (const double degrees : {30.0, 60.0}) {
-        Scene scene = square(black(), parallel(degrees), depth);
+        Scene scene = square(test::black_heights(), test::parallel_camera(degrees), depth);
         scene.camera->orthographic_height = 6.0F;
         const auto covered = [](const Image& image) {
             int count = 0;
@@ -307,17 +254,19 @@ TEST_F(ReliefEffects, SilhouettesEndWhereTheViewLeavesTheMap) {
                 count += test::pixel(image, pixels / 2, y).a > 0.0 ? 1 : 0;
             return count;
         };
-        const double pixels_per_texel = texel * std::cos(glm::radians(degrees)) * pixels / 6.0;
+        const double pixels_per_texel =
+            test::relief_texel * std::cos(glm::radians(degrees)) * pixels / 6.0;
         map_of(scene).silhouette = ReliefSilhouette::none;
         scene.materials[0].diffuse_texture = Texture{0};
-        EXPECT_NEAR(covered(drawn(scene)), map_side * pixels_per_texel, 1.0);
+        EXPECT_NEAR(covered(drawn(scene)), test::relief_map_side * pixels_per_texel, 1.0);
         map_of(scene).silhouette = ReliefSilhouette::clip;
         const double hidden = static_cast<double>(depth) * std::tan(glm::radians(degrees));
-        EXPECT_NEAR(covered(drawn(scene)), (map_side - hidden) * pixels_per_texel, 1.0);
+        EXPECT_NEAR(covered(drawn(scene)), (test::relief_map_side - hidden) * pixels_per_texel,
+                    1.0);
         EXPECT_LT(differing(scene), 0.001);
         // Along an axis that repeats, nothing is clipped.
         map_of(scene).texture.wrap_v = Wrap::repeat;
-        EXPECT_NEAR(covered(drawn(scene)), map_side * pixels_per_texel, 1.0);
+        EXPECT_NEAR(covered(drawn(scene)), test::relief_map_side * pixels_per_texel, 1.0);
         map_of(scene).texture.wrap_u = Wrap::repeat;
         EXPECT_THAT(reason_of(scene, "clipped relief").reason, HasSubstr("no border"));
     }
@@ -325,7 +274,7 @@ TEST_F(ReliefEffects, SilhouettesEndWhereTheViewLeavesTheMap) {
 
 TEST_F(ReliefEffects, SilhouettesAreThoseOfTheReference) {
     for (const bool unlit : {false, true}) {
-        Scene scene = square(bumps(), slanted(65.0), 8.0F);
+        Scene scene = square(test::bumpy_heights(), test::slanted_camera(65.0), 8.0F);
         map_of(scene).silhouette = ReliefSilhouette::clip;
         scene.materials[0].diffuse_texture = Texture{0};
         scene.materials[0].unlit = unlit;
@@ -359,7 +308,7 @@ Scene with_plane(Scene scene) {
 /// Black heights are a plane at z = -d, which meets the plane z = y at y = -d.
 TEST_F(ReliefEffects, WrittenDepthMovesIntersections) {
     constexpr float depth = 12.0F;
-    Scene scene = with_plane(square(black(), parallel(0.0), depth));
+    Scene scene = with_plane(square(test::black_heights(), test::parallel_camera(0.0), depth));
     const auto red_rows = [&](const Scene& shown) {
         const Image image = drawn(shown);
         int count = 0;
@@ -373,16 +322,16 @@ TEST_F(ReliefEffects, WrittenDepthMovesIntersections) {
     map_of(scene).write_depth = true;
     EXPECT_THAT(reason_of(scene, "written depth").reason, HasSubstr("pixels deep"));
     EXPECT_THAT(reason_of(scene, "maximum mipmaps").reason, HasSubstr("writes the depth"));
-    const double moved = static_cast<double>(depth) * texel;
+    const double moved = static_cast<double>(depth) * test::relief_texel;
     EXPECT_NEAR(red_rows(scene), pixels * (2.0 + moved) / 4.0, 1.0);
     EXPECT_LT(differing(scene), 0.001);
 }
 
 /// With perspective, too: on bumps, and in views of data.
 TEST_F(ReliefEffects, WrittenDepthIsThatOfTheReference) {
-    Scene scene = with_plane(square(bumps(), slanted(50.0), 10.0F));
+    Scene scene = with_plane(square(test::bumpy_heights(), test::slanted_camera(50.0), 10.0F));
     scene.materials[0].diffuse_texture = Texture{0};
-    scene.directional_lights = {from_the_left(30.0)};
+    scene.directional_lights = {test::light_from_the_left(30.0)};
     const Image flat = drawn(scene);
     map_of(scene).write_depth = true;
     EXPECT_LT(differing(scene), 0.003);

@@ -74,6 +74,10 @@ function shadowView(scene, bounds) {
     points.push([r * Math.cos(angle), r * Math.sin(angle)]);
   }
   return {texels, points, shift, place: fromRows(rows), lift: 2.5 * 2 * half * (isDirectional ? 1 : far) / texels,
+          light(point) {  // The position of a point of the light, or the direction to it; homogeneous.
+            const disc = add(times(right, point[0]), up, point[1]), reach = tangent * (isDirectional ? 1 : distance);
+            return [...add(isDirectional ? back : light.position, disc, reach), isDirectional ? 0 : 1];
+          },
           clip(point) {
             const moved = add(times(rows[2], shift[0]), rows[3], shift[1]);
             const side = (k) => add(times(add(rows[k], moved, point[k]), 2), rows[3], -1);

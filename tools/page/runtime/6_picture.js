@@ -264,6 +264,7 @@ class Painter {
     program.set('shadow_samples', view ? view.points.length : 0);
     if (!view) return;
     program.set('shadow_from_object', product(view.place, matrix));
+    program.set('shadow_from_world', view.place);
     program.set('shadow_lift', times(view.place, view.lift));
     program.set('shadow_shift', view.shift);
     const points = new Array(32).fill(0);
@@ -415,10 +416,10 @@ class Painter {
     points.forEach((point, layer) => {
       gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, maps.name, 0, layer);
       gl.clear(gl.DEPTH_BUFFER_BIT);
-      const toClip = view.clip(point);
+      const toClip = view.clip(point), light = view.light(point);
       for (const draw of picture.draws) {
         if (draw.shadowProgram === undefined) continue;
-        this.use(draw, gpu.programs[draw.shadowProgram], toClip, null);
+        this.use(draw, gpu.programs[draw.shadowProgram], toClip, light);
         gl.bindVertexArray(gpu.mesh(draw.mesh));
         gl.drawElements(gl.TRIANGLES, 3 * draw.count, gl.UNSIGNED_INT, 12 * draw.first);
       }

@@ -116,6 +116,8 @@ struct Features {
     bool self_shadow = false;     ///< The relief hides light from its own points.
     bool clipped_relief = false;  ///< Nothing is drawn where the view leaves a map that is clamped.
     bool written_depth = false;   ///< The depth buffer gets the depth of the relief.
+    /// Shadow maps hold the depth of the relief, and its points look them up.
+    bool displaced_shadow = false;
     // Light.
     bool ambient = false;
     std::uint32_t directional_lights = 0;
