@@ -32,7 +32,9 @@ MAX_FLIP_OF = {"MetalRoughSpheresNoTextures": 0.016}
 MAX_SHARE = 0.06
 FEW = ["data/vase.obj --height-map data/bricks-height.png --strength 12",
        "data/scenes/environment-mapping.json", "data/scenes/pot.glb --samples 1",
-       "data/scenes/relief-mapping.json --height-shadow on --height-write-depth on"]
+       "data/scenes/relief-mapping.json --height-shadow on --height-write-depth on",
+       "data/scenes/relief-mapping.json --height-write-depth on --height-method relief_mapping "
+       "--height-layers 64 --shadow 1"]
 MODELS = ["AnisotropyStrengthTest", "Avocado", "BoomBox", "BoxTexturedNonPowerOfTwo", "BoxVertexColors",
           "CesiumMan", "ClearCoatCarPaint", "ClearCoatTest", "Corset", "Duck", "EmissiveStrengthTest", "Fox",
           "InterpolationTest", "MetalRoughSpheresNoTextures", "MorphPrimitivesTest", "MultiUVTest",
