@@ -109,21 +109,33 @@ HeightHit HeightField::first_hit(const HeightRay& ray) const {
         std::max({std::abs(ray.direction.x), std::abs(ray.direction.y), std::abs(ray.direction.z)});
     const bool enters = longest > 0.0 && is_finite(ray.direction) && is_finite(ray.texcoord) &&
                         std::isfinite(ray.black_depth) && std::isfinite(ray.start_depth) &&
-                        (ray.direction.z > 0.0 || ray.start_depth > 0.0);
+                        std::isfinite(ray.bend) && (ray.direction.z > 0.0 || ray.start_depth > 0.0);
     if (!enters) return hit;
     const glm::dvec3 direction = ray.direction / longest;
     double end = infinity;
-    if (direction.z > 0.0)
-        end = std::max(0.0, (ray.black_depth - ray.start_depth) / direction.z);
-    else if (direction.z < 0.0)
+    HeightRayEnd end_kind = HeightRayEnd::left;
+    double bend = 0.0;  // For each square of a texel of the longest component.
+    if (direction.z > 0.0) {
+        bend = ray.bend * direction.z * direction.z;
+        const BentDepth depths{ray.start_depth, ray.bend};
+        end = std::max(0.0, depths.way_to(ray.black_depth));
+        if (end < infinity)  // Below black is no room: only rounding hides this hit.
+            end_kind = HeightRayEnd::hit;
+        else
+            end = depths.way_out();
+        end /= direction.z;
+    } else if (direction.z < 0.0) {
         end = ray.start_depth / -direction.z;
+    }
+    const auto depth_at = [&](double t) { return ray.start_depth + (direction.z - bend * t) * t; };
 
     PatchSteps x(near_map(ray.texcoord.x, heights.width(), heights.wraps().x), direction.x);
     PatchSteps y(near_map(ray.texcoord.y, heights.height(), heights.wraps().y), direction.y);
     double t = 0.0;  // Along the ray, in texels of the longest component.
     const auto end_at = [&](double where, const BilinearPatch& patch, HeightRayEnd kind) {
         hit.texcoord += glm::dvec2(direction) * where / heights.size();
-        hit.depth = std::clamp(ray.start_depth + direction.z * where, 0.0, ray.black_depth);
+        hit.depth = std::clamp(depth_at(where), 0.0, ray.black_depth);
+        hit.way = direction.z * where;
         hit.slope = ray.black_depth * patch.slope(x.within(where), y.within(where));
         hit.end = kind;
         return hit;
@@ -132,11 +144,11 @@ HeightHit HeightField::first_hit(const HeightRay& ray) const {
         const BilinearPatch patch = heights.patch(x.patch(), y.patch());
         ++hit.lookups;
         const double exit = std::max(t, std::min({x.exit(), y.exit(), end}));
-        const double root = t + patch_hit(patch, {x.within(t), y.within(t)}, direction,
-                                          ray.start_depth + direction.z * t, ray.black_depth);
+        const glm::dvec3 here(direction.x, direction.y, direction.z - 2.0 * bend * t);
+        const double root = t + patch_hit(patch, {x.within(t), y.within(t)}, here, depth_at(t),
+                                          ray.black_depth, bend);
         if (root <= exit) return end_at(root, patch, HeightRayEnd::hit);
-        if (exit >= end)  // Below black is no room: only rounding hides this hit.
-            return end_at(end, patch, direction.z > 0.0 ? HeightRayEnd::hit : HeightRayEnd::left);
+        if (exit >= end) return end_at(end, patch, end_kind);
         if (hit.lookups == max_patches) return end_at(exit, patch, HeightRayEnd::exceeded);
         t = exit;
         if (x.exit() <= exit)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The methods by which shaders find where a ray meets a height map, in double precision and with
-// the same steps as shaders/height_march.glsl. All are in texel space: the ray is at p + k s at
-// depth s, and the depth of the surface is D (1 - h).
+// the same steps as shaders/height_march.glsl. All are in texel space: the ray is at p + k s
+// after the way s, at the depth s - bend s^2, and the depth of the surface is D (1 - h).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,19 +35,25 @@ class Marching {
         : field_(field),
           origin_(ray.texcoord),
           k_(glm::dvec2(ray.direction) / ray.direction.z),
-          black_depth_(ray.black_depth) {}
+          black_depth_(ray.black_depth),
+          depths_{0.0, ray.bend},
+          end_(depths_.way_to(black_depth_)),
+          leaves_(std::isinf(end_)) {
+        if (leaves_) end_ = depths_.way_out();
+    }
 
-    /// Returns how far the point at a depth is below the surface; negative above it.
-    double below_surface(double depth) {
+    /// Returns how far the point after a way is below the surface; negative above it.
+    double below_surface(double way) {
         ++lookups_;
-        return depth - black_depth_ * (1.0 - field_.heights.at(texcoord(depth)));
+        return depths_.at(way) - black_depth_ * (1.0 - field_.heights.at(texcoord(way)));
     }
 
-    [[nodiscard]] glm::dvec2 texcoord(double depth) const {
-        return origin_ + k_ * depth / field_.heights.size();
+    [[nodiscard]] glm::dvec2 texcoord(double way) const {
+        return origin_ + k_ * way / field_.heights.size();
     }
+    [[nodiscard]] double depth(double way) const { return depths_.at(way); }
 
-    // The methods return the depth of the hit.
+    // The methods return the way to the hit: its depth, if the ray is straight.
     double parallax();
     double parallax_occlusion(int layers);
     double relief_mapping(int layers, int bisections);
@@ -56,9 +62,11 @@ class Marching {
 
     [[nodiscard]] int lookups() const { return lookups_; }
     [[nodiscard]] bool is_exceeded() const { return is_exceeded_; }
+    /// Tells whether the ray leaves before a way.
+    [[nodiscard]] bool has_left(double way) const { return leaves_ && way >= end_; }
 
   private:
-    /// Two depths, and how far their points are below the surface.
+    /// Two ways, and how far their points are below the surface.
     struct Interval {
         double above = 0.0, below = 0.0;
         double below_at_above = 0.0, below_at_below = 0.0;
@@ -70,23 +78,27 @@ class Marching {
     glm::dvec2 origin_;
     glm::dvec2 k_;
     double black_depth_;
+    BentDepth depths_;
+    double end_;   ///< The way to black, or out of the relief.
+    bool leaves_;  ///< The ray does not reach black.
     int lookups_ = 0;
     bool is_exceeded_ = false;
 };
 
 /// The offset for the depth at the point on the surface of white [Kaneko 2001].
 double Marching::parallax() {
-    return -below_surface(0.0);
+    return std::min(depths_.way_to(-below_surface(0.0)), end_);
 }
 
-/// Returns the last of the layers at depths i D / N that is above the surface, and the next one.
+/// Returns the last of the layers at the ways i / N to the end that is above the surface, and the
+/// next one.
 Marching::Interval Marching::first_layer_below(int layers) {
     Interval result;
     result.below_at_below = below_surface(0.0);
     for (int i = 1; i <= layers && result.below_at_below < 0.0; ++i) {
         result.above = result.below;
         result.below_at_above = result.below_at_below;
-        result.below = black_depth_ * i / layers;
+        result.below = end_ * i / layers;
         result.below_at_below = below_surface(result.below);
     }
     return result;
@@ -96,6 +108,7 @@ Marching::Interval Marching::first_layer_below(int layers) {
 /// points, from a above to b below the surface, meets it at a / (a + b).
 double Marching::parallax_occlusion(int layers) {
     const Interval around = first_layer_below(layers);
+    if (around.below_at_below < 0.0) return around.below;  // The ray leaves.
     const double both = around.below_at_below - around.below_at_above;
     const double weight = both > 0.0 ? std::clamp(-around.below_at_above / both, 0.0, 1.0) : 0.0;
     return around.above + (around.below - around.above) * weight;
@@ -117,7 +130,8 @@ double Marching::relief_mapping(int layers, int bisections) {
 
 /// A point at g above the surface is on the axis of a cone with the ratio c of radius to height.
 /// The ray leaves the cone after the depth d where |k| d = c (g - d), so d = c g / (|k| + c)
-/// [Policarpo and Oliveira 2007]. It is then below the surface if it has crossed it.
+/// [Policarpo and Oliveira 2007]. It is then below the surface if it has crossed it. Bent rays take
+/// the largest rate at which they go down from there on, so that they stay within the cone.
 double Marching::relaxed_cones(int steps, int bisections, const HeightField& cones) {
     const glm::dvec2 size = field_.heights.size();
     const double slant = std::sqrt(k_.x * k_.x + k_.y * k_.y);
@@ -132,7 +146,10 @@ double Marching::relaxed_cones(int steps, int bisections, const HeightField& con
         const double cone = root * root * scale;
         above = below;
         // A cone of no width stops the ray; straight down, every other cone ends at the surface.
-        if (cone > 0.0) below = std::min(below + cone * gap / (slant + cone), black_depth_);
+        if (cone > 0.0) {
+            const double rate = std::max({depths_.rate(below), depths_.rate(end_), 0.0});
+            below = std::min(below + cone * gap / (slant + cone * rate), end_);
+        }
     }
     return bisected(above, below, bisections);
 }
@@ -204,12 +221,12 @@ double Marching::maximum_mipmaps(int max_steps) {
     // The nodes of the first level are as large as the ray is long, but have at most 8 x 8 patches:
     // larger ones are rarely skipped at once.
     constexpr int max_first_level = 3;
-    const double reach = black_depth_ * std::max(std::abs(k_.x), std::abs(k_.y)) + 1.0;
+    const double reach = end_ * std::max(std::abs(k_.x), std::abs(k_.y)) + 1.0;
     int level = 0;
     while (level < std::min(last_level, max_first_level) &&
            static_cast<double>(std::int64_t{1} << level) < reach)
         ++level;
-    double depth = 0.0;
+    double way = 0.0;
     for (int i = 0; i < max_steps; ++i) {
         const NodeSpan x = level > 0 ? node_span(column, heights.width(), heights.wraps().x, level)
                                      : NodeSpan{0, column, column + 1};
@@ -217,35 +234,36 @@ double Marching::maximum_mipmaps(int max_steps) {
                                      : NodeSpan{0, row, row + 1};
         const double leaves_x = exit_depth(from.x, k_.x, x);
         const double leaves_y = exit_depth(from.y, k_.y, y);
-        const double end = std::min(std::min(leaves_x, leaves_y), black_depth_);
+        const double end = std::min(std::min(leaves_x, leaves_y), end_);
         if (level > 0) {
             ++lookups_;
             const MaximumLevel& maxima = field_.levels[static_cast<std::size_t>(level)];
             const double top = black_depth_ * (1.0 - maxima.at(x.node, y.node));
-            if (end >= top) {
+            if (depths_.deepest(way, std::max(way, end)) >= top) {
                 --level;
-                if (top <= depth) continue;  // Rounding must not lead back to a patch.
-                depth = std::max(depth, std::min(top, end));
-                column = patch_at(from.x + k_.x * depth, x.first, x.last);
-                row = patch_at(from.y + k_.y * depth, y.first, y.last);
+                if (top <= depths_.at(way)) continue;  // Rounding must not lead back to a patch.
+                way = std::max(way, std::min(depths_.way_to(top), end));
+                column = patch_at(from.x + k_.x * way, x.first, x.last);
+                row = patch_at(from.y + k_.y * way, y.first, y.last);
                 continue;
             }
         } else {
             lookups_ += 4;
             const auto within = [&](double start, double rate, std::int64_t patch) {
-                return std::clamp(start + rate * depth - static_cast<double>(patch), 0.0, 1.0);
+                return std::clamp(start + rate * way - static_cast<double>(patch), 0.0, 1.0);
             };
             const glm::dvec2 at(within(from.x, k_.x, column), within(from.y, k_.y, row));
-            const double hit = depth + patch_hit(heights.patch(column, row), at,
-                                                 glm::dvec3(k_, 1.0), depth, black_depth_);
+            const double hit =
+                way + patch_hit(heights.patch(column, row), at, glm::dvec3(k_, depths_.rate(way)),
+                                depths_.at(way), black_depth_, depths_.bend);
             if (hit <= end) return hit;
         }
-        if (end >= black_depth_) return black_depth_;
-        depth = std::max(depth, end);
+        if (end >= end_) return end_;
+        way = std::max(way, end);
         const std::int64_t left_column = column;
         const std::int64_t left_row = row;
-        column = patch_at(from.x + k_.x * depth, x.first, x.last);
-        row = patch_at(from.y + k_.y * depth, y.first, y.last);
+        column = patch_at(from.x + k_.x * way, x.first, x.last);
+        row = patch_at(from.y + k_.y * way, y.first, y.last);
         if (leaves_x <= leaves_y) column = k_.x > 0.0 ? x.last : x.first - 1;
         if (leaves_y <= leaves_x) row = k_.y > 0.0 ? y.last : y.first - 1;
         const bool leaves_parent =
@@ -253,7 +271,7 @@ double Marching::maximum_mipmaps(int max_steps) {
         if (leaves_parent) level = std::min(level + 1, last_level);
     }
     is_exceeded_ = true;
-    return depth;
+    return way;
 }
 
 MaximumLevel patch_maxima(const BilinearHeights& heights) {
@@ -312,30 +330,34 @@ HeightHit HeightField::march(const HeightRay& ray, const HeightMarch& method,
     constexpr double max_slant_squared = 1e12;
     const glm::dvec2 k = glm::dvec2(ray.direction) / ray.direction.z;
     const bool enters = ray.direction.z > 0.0 && is_finite(ray.texcoord) &&
-                        std::isfinite(ray.black_depth) && glm::dot(k, k) < max_slant_squared;
+                        std::isfinite(ray.black_depth) && std::isfinite(ray.bend) &&
+                        glm::dot(k, k) < max_slant_squared;
     if (!enters) return hit;
     Marching marching(*data_, ray);
     switch (method.method) {
         case HeightMethod::parallax:
-            hit.depth = marching.parallax();
+            hit.way = marching.parallax();
             break;
         case HeightMethod::parallax_occlusion:
-            hit.depth = marching.parallax_occlusion(method.layers);
+            hit.way = marching.parallax_occlusion(method.layers);
             break;
         case HeightMethod::relief_mapping:
-            hit.depth = marching.relief_mapping(method.layers, method.bisections);
+            hit.way = marching.relief_mapping(method.layers, method.bisections);
             break;
         case HeightMethod::relaxed_cones:
-            hit.depth = marching.relaxed_cones(method.layers, method.bisections, *cones);
+            hit.way = marching.relaxed_cones(method.layers, method.bisections, *cones);
             break;
         case HeightMethod::maximum_mipmaps:
-            hit.depth = marching.maximum_mipmaps(method.max_steps);
+            hit.way = marching.maximum_mipmaps(method.max_steps);
             break;
     }
-    hit.texcoord = marching.texcoord(hit.depth);
+    hit.depth = marching.depth(hit.way);
+    hit.texcoord = marching.texcoord(hit.way);
     hit.slope = ray.black_depth * slope(hit.texcoord);
     hit.lookups = marching.lookups();
-    hit.end = marching.is_exceeded() ? HeightRayEnd::exceeded : HeightRayEnd::hit;
+    hit.end = marching.is_exceeded()       ? HeightRayEnd::exceeded
+              : marching.has_left(hit.way) ? HeightRayEnd::left
+                                           : HeightRayEnd::hit;
     return hit;
 }
 

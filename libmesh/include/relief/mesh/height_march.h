@@ -2,7 +2,7 @@
 /// \file
 /// Relief mapping: the methods that intersect a ray with a height map.
 /// Tests: tests/mesh/bump/height_field_test.cpp, tests/mesh/bump/height_march_test.cpp,
-/// tests/mesh/bump/cone_map_test.cpp.
+/// tests/mesh/bump/curved_ray_test.cpp, tests/mesh/bump/cone_map_test.cpp.
 #pragma once
 
 #include <array>
@@ -58,13 +58,59 @@ struct HeightRay {
     glm::dvec3 direction{0.0};  ///< x to the right, y down in the image, z into the depth; texels.
     double black_depth = 0.0;   ///< The depth D of black; from 0.
     double start_depth = 0.0;   ///< The depth of the beginning; from 0 to D.
+    /// How much the surface curves below a ray that goes down: where the direction has led down by
+    /// s, the ray is at the depth start_depth + s - bend s^2. Rays that go up ignore it.
+    double bend = 0.0;
 };
+
+/// How a surface curves around a point, to the second order, in texels whose length is the root of
+/// the area of a texel.
+struct HeightCurvature {
+    /// The turn of the unit normal over a texel to the right (first column) and down: texels to the
+    /// right and down for each unit of length. Positive on convex surfaces.
+    glm::dmat2 turn{0.0};
+    /// The inner products of the edges of a texel on the tangent plane.
+    glm::dmat2 metric{1.0};
+};
+
+/// Returns the curvature of a triangle whose normals are interpolated.
+///
+/// \param normal  interpolated, of any length
+/// \param along_x,along_y  the edges of a texel to the right and down, in the space of the normal
+/// \param normal_x,normal_y  what the interpolated normal gains along them
+/// \return zero if something is not finite, or if the edges do not span a plane across the normal
+HeightCurvature height_curvature(const glm::dvec3& normal, const glm::dvec3& along_x,
+                                 const glm::dvec3& along_y, const glm::dvec3& normal_x,
+                                 const glm::dvec3& normal_y);
+
+/// A ray over a curved surface, as the coordinates and the depth of the surface have it.
+struct CurvedHeightRay {
+    HeightRay ray;  ///< Bent.
+    /// After the way s of the bent ray, the straight one is at the depth plane.x s + plane.y s^2 on
+    /// the tangent plane.
+    glm::dvec2 plane{1.0, 0.0};
+};
+
+/// Bends a ray of view by the curvature of the surface below it.
+///
+/// \param ray  on the tangent plane, from the surface of white down; its start_depth and bend are
+///         ignored
+/// \return the parabola through three points of the ray: where it begins, where it reaches black or
+///         is deepest, and at half of the depth on the plane between them. These points are exact
+///         on spheres and cylinders, but for rounding; on other surfaces to the second order. The
+///         ray is straight if the curvature is zero or not finite, and straight down
+///
+/// A radius of curvature of less than twice the depth of black counts as twice the depth. On a
+/// convex surface, a ray that does not reach black leaves through the surface of white. The
+/// coordinates stay linear along the ray, so that its intersection with a bilinear patch stays a
+/// quadratic equation.
+CurvedHeightRay curved_ray(const HeightRay& ray, const HeightCurvature& curvature);
 
 /// How a ray ends.
 enum class HeightRayEnd {
     hit,
     left,      ///< It leaves through the surface of white, or has no direction; from the surface of
-               ///< white, only directions with z > 0 enter.
+               ///< white, only directions with z > 0 enter, which leave if the surface is convex.
     exceeded,  ///< It is longer than the bound on patches or steps.
 };
 
@@ -72,6 +118,7 @@ enum class HeightRayEnd {
 struct HeightHit {
     glm::dvec2 texcoord{0.0};  ///< Continues that of the ray: it is not reduced to [0,1].
     double depth = 0.0;        ///< In texels below white.
+    double way = 0.0;          ///< How far the direction has led down to there, or up, in texels.
     /// The slope of the bilinear heights at the point: the height in texels that is gained per
     /// texel to the right and per texel down in the image. The normal in texel space, with z up,
     /// is (-slope.x, -slope.y, 1).
@@ -143,7 +190,8 @@ class HeightField {
     /// \param cones  for HeightMethod::relaxed_cones: the second channel of a cone map of the same
     ///         size as a field, HeightField(channel_of(cone_map, 1), wraps)
     /// \return the point that the method takes for the hit. HeightRayEnd::exceeded is possible only
-    ///         for HeightMethod::maximum_mipmaps; the others take what they have
+    ///         for HeightMethod::maximum_mipmaps; the others take what they have. A bent ray ends
+    ///         as HeightRayEnd::left where it leaves through the surface of white without a hit
     /// \throws InvalidInput if the settings are out of range, or cones are missing or have another
     ///         size
     [[nodiscard]] HeightHit march(const HeightRay& ray, const HeightMarch& method,
