@@ -2,13 +2,13 @@
 // Silhouettes and depth, which follow from the hit of a relief (height_march.glsl).
 
 //@part clip_both implements relief_edge
-// Fragments whose ray leaves the map along an axis that does not repeat are discarded. As with masks
-// (alpha.glsl), this is a last step of a shader.
+// Fragments whose ray leaves the map along an axis that does not repeat are discarded, and those whose
+// ray leaves the relief of a curved surface. As with masks (alpha.glsl), this is a last step of a shader.
 
 //@include "height_edge.glsl#left"
 
 void cut_silhouette() {
-    if (leaves_map(texcoord_surface.x, texcoord_displaced.x) ||
+    if (is_left(relief_depth) || leaves_map(texcoord_surface.x, texcoord_displaced.x) ||
         leaves_map(texcoord_surface.y, texcoord_displaced.y))
         discard;
 }
@@ -19,7 +19,7 @@ void cut_silhouette() {
 //@include "height_edge.glsl#left"
 
 void cut_silhouette() {
-    if (leaves_map(texcoord_surface.x, texcoord_displaced.x)) discard;
+    if (is_left(relief_depth) || leaves_map(texcoord_surface.x, texcoord_displaced.x)) discard;
 }
 
 //@part clip_v implements relief_edge
@@ -28,7 +28,14 @@ void cut_silhouette() {
 //@include "height_edge.glsl#left"
 
 void cut_silhouette() {
-    if (leaves_map(texcoord_surface.y, texcoord_displaced.y)) discard;
+    if (is_left(relief_depth) || leaves_map(texcoord_surface.y, texcoord_displaced.y)) discard;
+}
+
+//@part curved implements relief_edge
+// The same for maps that repeat along both axes.
+
+void cut_silhouette() {
+    if (is_left(relief_depth)) discard;
 }
 
 //@neutral relief_edge
@@ -51,7 +58,7 @@ bool leaves_map(float surface, float displaced) {
 //@include "inputs.glsl#eye"
 
 void write_depth() {
-    vec4 beyond = -view_texels.z * relief_depth *
+    vec4 beyond = -view_texels.z * plane_depth(relief_depth) *
                   (clip_from_world * vec4(to_eye(position_world), 0.0));
     float w = 1.0 / gl_FragCoord.w;
     float clip_depth = 2.0 * gl_FragCoord.z - 1.0;

@@ -7,11 +7,32 @@
 // texels below the surface of white, where a texel is as long as the square root of its area on the
 // triangle. The ray is at p + k s at depth s. A triangle maps the plane affinely to texture
 // coordinates, so that the differences between pixels give this map exactly, also where it mirrors
-// or stretches.
+// or stretches. Above a curved surface (height_curve.glsl), s is the way of the ray, and its depth is
+// ray_depth(s).
 
 //@part displacement implements displacement
 // The displaced texture coordinates. Surfaces whose interpolated normal points away from the eye are
 // not displaced.
+
+//@include "height_march.glsl#ray"
+//@include <ray_curve>
+//@include <hit_depth>
+
+float depth_at_hit() {
+    return view_texels.z > 0.0 ? hit_depth(texcoord_surface * height_size(), ray_slant()) : 0.0;
+}
+
+float relief_depth = depth_at_hit();
+vec2 texcoord_displacement = ray_slant() * relief_depth / height_size();
+vec2 texcoord_displaced = texcoord_surface + texcoord_displacement;
+
+//@include <displaced_second>
+
+//@neutral displacement
+// Textures are looked up at the coordinates of the surface.
+
+//@part ray
+// The ray of view in texel space, on the tangent plane.
 
 //@include "inputs.glsl#texcoord"
 //@include "inputs.glsl#eye"
@@ -19,7 +40,6 @@
 //@include "vector.glsl#normalized_or"
 //@include "height_march.glsl#field"
 //@include <position>
-//@include <hit_depth>
 
 vec2 texcoord_right = dFdx(texcoord_surface);
 vec2 texcoord_up = dFdy(texcoord_surface);
@@ -47,19 +67,6 @@ vec3 ray_texels(vec3 outward_world) {
 }
 
 vec3 view_texels = ray_texels(to_eye(position_world));
-
-float depth_at_hit() {
-    return view_texels.z > 0.0 ? hit_depth(texcoord_surface * height_size(), view_texels.xy) : 0.0;
-}
-
-float relief_depth = depth_at_hit();
-vec2 texcoord_displacement = view_texels.xy * relief_depth / height_size();
-vec2 texcoord_displaced = texcoord_surface + texcoord_displacement;
-
-//@include <displaced_second>
-
-//@neutral displacement
-// Textures are looked up at the coordinates of the surface.
 
 //@part second implements displaced_second
 // The second texture coordinates, displaced by the same place on the triangle.
@@ -90,26 +97,35 @@ uniform float height_depth;
 
 vec2 height_size() { return vec2(textureSize(height_texture, 0)); }
 
-// Returns how far the point at depth s is below the relief; negative above it.
+//@part below
+// How far the point of the ray after the way s is below the relief; negative above it.
+
+//@include "height_march.glsl#field"
+//@include <ray_curve>
+
 float below_relief(vec2 p, vec2 k, float s) {
     float height = textureLod(height_texture, (p + k * s) / height_size(), 0.0).r;
-    return s - height_depth * (1.0 - height);
+    return ray_depth(s) - height_depth * (1.0 - height);
 }
 
 //@part parallax implements hit_depth
 // One step, to the depth of the relief under the surface point. Source: [Kaneko 2001].
 
-float hit_depth(vec2 p, vec2 k) { return -below_relief(p, k, 0.0); }
+//@include "height_march.glsl#below"
+
+float hit_depth(vec2 p, vec2 k) { return way_to(-below_relief(p, k, 0.0)); }
 
 //@part layers
 // Returns the depths of the last layer above the relief and of the first one below it; both are 0 if
 // the ray begins below it.
 
+//@include "height_march.glsl#below"
+
 uniform float height_layers;
 
 vec2 depths_around(vec2 p, vec2 k) {
     if (below_relief(p, k, 0.0) >= 0.0) return vec2(0.0);
-    float layer = height_depth / height_layers;
+    float layer = ray_end() / height_layers;
     float s = layer;
     for (float i = 1.0; i < height_layers && below_relief(p, k, s) < 0.0; i += 1.0) s += layer;
     return vec2(s - layer, s);
@@ -117,6 +133,8 @@ vec2 depths_around(vec2 p, vec2 k) {
 
 //@part bisection
 // Halves the interval between a point above the relief and one below it.
+
+//@include "height_march.glsl#below"
 
 uniform float height_bisections;
 
@@ -139,6 +157,7 @@ float hit_depth(vec2 p, vec2 k) {
     float above = -below_relief(p, k, around.x);
     float below = below_relief(p, k, around.y);
     float both = above + below;
+    if (is_left(around.y) && below < 0.0) return around.y;
     return around.x + (around.y - around.x) * (both > 0.0 ? clamp(above / both, 0.0, 1.0) : 0.0);
 }
 
@@ -174,9 +193,10 @@ float hit_depth(vec2 p, vec2 k) {
         float above = -below_relief(p, k, around.y);
         if (above <= 0.0) break;
         float cone = cone_at(p + k * around.y);
-        // A cone of no width stops the ray.
-        float deeper = cone > 0.0 ? cone * above / (slant + cone) : 0.0;
-        around = vec2(around.y, min(around.y + deeper, height_depth));
+        // A cone of no width stops the ray. Bent rays stay within the cone at their largest rate.
+        float rate = max(max(ray_rate(around.y), ray_rate(ray_end())), 0.0);
+        float deeper = cone > 0.0 ? cone * above / (slant + cone * rate) : 0.0;
+        around = vec2(around.y, min(around.y + deeper, ray_end()));
     }
     return bisected(p, k, around);
 }
@@ -235,12 +255,12 @@ vec3 heights_along(vec2 at, vec2 k, ivec2 cell) {
 
 //@include "height_march.glsl#walk"
 
-// Returns the depth, from `begin` on, at which the ray passes the patch's surface; no_exit if it does
-// not. With d the depth from `begin`, the distance below the relief is q.x + q.y d + q.z d d.
+// Returns the way, from `begin` on, at which the ray passes the patch's surface; no_exit if it does
+// not. With d the way from `begin`, the distance below the relief is q.x + q.y d + q.z d d.
 float patch_depth(vec2 from, vec2 k, ivec2 cell, float begin) {
     vec3 along = heights_along(clamp(from + k * begin - vec2(cell), 0.0, 1.0), k, cell);
-    vec3 q = vec3(begin - height_depth * (1.0 - along.x), 1.0 + height_depth * along.y,
-                  height_depth * along.z);
+    vec3 q = vec3(ray_depth(begin) - height_depth * (1.0 - along.x),
+                  ray_rate(begin) + height_depth * along.y, height_depth * along.z - ray_bend());
     if (q.x >= 0.0) return begin;
     float square = q.y * q.y - 4.0 * q.z * q.x;
     float root = q.y + sqrt(max(square, 0.0));
@@ -263,7 +283,8 @@ float hit_depth(vec2 p, vec2 k) {
     vec2 from = p - 0.5;
     ivec2 cell = ivec2(floor(from));
     int last_level = int(floor(log2(float(max(height_texels.x, height_texels.y)))));
-    float reach = height_depth * max(abs(k.x), abs(k.y)) + 1.0;
+    float last = ray_end();
+    float reach = last * max(abs(k.x), abs(k.y)) + 1.0;
     int level = min(int(ceil(log2(reach))), min(max_first_level, last_level));
     float s = 0.0;
     float steps = 0.0;
@@ -275,13 +296,13 @@ float hit_depth(vec2 p, vec2 k) {
                 HeightSpan x = height_columns(cell.x, level);
                 HeightSpan y = height_rows(cell.y, level);
                 vec2 leaves = exit_depths(from, k, x, y);
-                float end = min(min(leaves.x, leaves.y), height_depth);
+                float end = min(min(leaves.x, leaves.y), last);
                 float highest = texelFetch(height_texture, ivec2(x.node, y.node), level).r;
                 float top = height_depth * (1.0 - highest);
-                bool passes = end < top;
-                bool stays = !passes && top <= s;  // Rounding must not lead back to a cell.
-                s = max(s, min(top, end));
-                goes_on = steps < height_steps && (!passes || end < height_depth);
+                bool passes = deepest(s, max(s, end)) < top;
+                bool stays = !passes && top <= ray_depth(s);  // Rounding must not lead back to a cell.
+                s = max(s, passes ? end : min(way_to(top), end));
+                goes_on = steps < height_steps && (!passes || end < last);
                 ivec2 left = cell;
                 vec2 point = from + k * s;
                 if (passes) cell = next_cell(point, k, x, y, leaves);
@@ -294,9 +315,9 @@ float hit_depth(vec2 p, vec2 k) {
             HeightSpan x = patch_span(cell.x);
             HeightSpan y = patch_span(cell.y);
             vec2 leaves = exit_depths(from, k, x, y);
-            float end = min(min(leaves.x, leaves.y), height_depth);
+            float end = min(min(leaves.x, leaves.y), last);
             float hit = patch_depth(from, k, cell, s);
-            goes_on = hit > end && end < height_depth && steps < height_steps;
+            goes_on = hit > end && end < last && steps < height_steps;
             s = hit <= end ? hit : max(s, end);
             ivec2 left = cell;
             cell = next_cell(from + k * s, k, x, y, leaves);

@@ -33,7 +33,7 @@ in vec4 shadow_place;
 uniform mat4 shadow_from_world;
 
 vec4 place_seen() {
-    vec3 nearer = view_texels.z * relief_depth * to_eye(position_world);
+    vec3 nearer = view_texels.z * plane_depth(relief_depth) * to_eye(position_world);
     return shadow_place - shadow_from_world * vec4(nearer, 0.0);
 }
 

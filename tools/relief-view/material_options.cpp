@@ -106,7 +106,8 @@ void add_relief_options(CLI::App& app, ViewOptions& options) {
         .group(maps_group);
     add_field(app, fields, "--height-silhouette", &ReliefMap::silhouette,
               "Choose what is drawn where the view leaves a height map that does not repeat: its "
-              "border continues (none), or nothing (clip). Default: none.")
+              "border continues (none), or nothing (clip; curve: also where the view passes a "
+              "relief that curves with the surface). Default: none.")
         .group(maps_group);
     add_field(app, fields, "--height-write-depth", &ReliefMap::write_depth,
               "Write the depth of the relief, so that other surfaces meet it where it is seen. "

@@ -37,6 +37,7 @@ void drop_depth_mapping(Features& f) {
     f.self_shadow &=
         is_displaced(f) && light_count(f) > 0 && f.interpolation != Interpolation::gouraud;
     f.clipped_relief &= is_displaced(f) && clamped;
+    f.curved_relief &= is_displaced(f);
     f.written_depth &= is_displaced(f);
     f.displaced_shadow &= f.written_depth;
     if (!shows_displacement(f)) f.depth_mapping = DepthMapping::none;
@@ -49,6 +50,7 @@ void keep_depth_mapping(const Features& f, Features& kept) {
     kept.height_wrap_u = f.height_wrap_u;
     kept.height_wrap_v = f.height_wrap_v;
     kept.clipped_relief = f.clipped_relief;
+    kept.curved_relief = f.curved_relief;
     kept.written_depth = f.written_depth;
 }
 
@@ -333,7 +335,8 @@ Features detail::casting_features(Features f) {
 }
 
 bool detail::shows_displacement(const Features& f) {
-    if (f.detail != NormalDetail::none || f.self_shadow || f.clipped_relief || f.written_depth)
+    if (f.detail != NormalDetail::none || f.self_shadow || f.clipped_relief || f.curved_relief ||
+        f.written_depth)
         return true;
     return std::any_of(slot_effects.begin(), slot_effects.end(), [&](const SlotEffect& sampling) {
         return sampling.effect != nullptr && f.*sampling.effect;

@@ -211,6 +211,7 @@ struct Decision {
 struct ReliefBounds {
     double shift = 0.0;   ///< How far it displaces what the picture shows.
     double depth = 0.0;   ///< How deep it is.
+    double curve = 0.0;   ///< How far it displaces it where normals differ; 0 on flat meshes.
     double shadow = 0.0;  ///< The length of its self-shadows, if the material requests them;
                           ///< infinite if light arrives along the surface or from below it.
 };

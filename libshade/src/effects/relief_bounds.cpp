@@ -136,6 +136,8 @@ void include(const Screen& screen, const Seen& seen, double depth_world,
     if (!sine && !is_near) return;
     bounds.shift = std::max(bounds.shift, is_near ? pixels : pixels * *sine);
     bounds.depth = std::max(bounds.depth, pixels);
+    // A relief that curves is not lower than one that does not, and nothing lies deeper than black.
+    if (!seen.has_one_normal()) bounds.curve = std::max(bounds.curve, pixels);
     if (lights.empty() || std::isinf(bounds.shadow)) return;
     bounds.shadow = std::max(bounds.shadow, is_near ? pixels : pixels * flattest(lights, seen));
 }
@@ -197,7 +199,11 @@ std::optional<ReliefBounds> relief_bounds(const Scene& scene, const Instance& in
         const double depth_world =
             static_cast<double>(map.depth) * std::sqrt(area_world / area_texels);
         include(screen, seen, depth_world, lights, bounds);
-        if (std::isinf(bounds.shift) && (lights.empty() || std::isinf(bounds.shadow))) break;
+        const bool curve_is_known =
+            map.silhouette != ReliefSilhouette::curve || std::isinf(bounds.curve);
+        if (std::isinf(bounds.shift) && curve_is_known &&
+            (lights.empty() || std::isinf(bounds.shadow)))
+            break;
     }
     return bounds;
 }

@@ -4,9 +4,11 @@
 // Tests: tests/shade/render/depth_mapping_test.cpp, relief_effects_test.cpp.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "effects/features.h"
 
@@ -99,6 +101,26 @@ Decision of_clipped_relief(Subject s) {
     return {true, s.name + " casts the shadow of its relief"};
 }
 
+/// True if all triangles have one normal, so that no surface curves below the relief.
+bool has_flat_triangles(Subject s) {
+    const std::vector<glm::vec3>& normals = s.mesh.normals;
+    return s.pose == nullptr && !normals.empty() &&
+           std::all_of(s.mesh.triangles.begin(), s.mesh.triangles.end(), [&](const auto& corners) {
+               return normals[corners.x] == normals[corners.y] &&
+                      normals[corners.x] == normals[corners.z];
+           });
+}
+
+Decision of_curved_relief(Subject s) {
+    const std::string missing = missing_relief(s);
+    if (!missing.empty()) return {false, missing};
+    if (s.material.height_map->silhouette != ReliefSilhouette::curve)
+        return {false, s.name + " does not request it"};
+    if (has_flat_triangles(s)) return {false, s.name + " covers flat triangles only"};
+    return by_bound(s, &ReliefBounds::curve,
+                    fmt::format("the curvature moves the relief of {} by at most", s.name));
+}
+
 /// Depth mapping is planned where it moves what is seen, and where an effect shows the depth of the
 /// relief without moving it.
 Decision of_depth_mapping(Subject s, HeightMethod method) {
@@ -162,7 +184,16 @@ std::vector<EffectRow> detail::relief_rows() {
          .neutral =
              [](Forced s) {
                  return s.material.height_map &&
-                        s.material.height_map->silhouette == ReliefSilhouette::clip;
+                        s.material.height_map->silhouette != ReliefSilhouette::none;
+             },
+         .only_by_name = true},
+        {.effect = one_switch<&F::curved_relief>("curved relief", "no relief is displaced"),
+         .decide = of_curved_relief,
+         .choice = "the silhouette of a relief is the material's choice",
+         .neutral =
+             [](Forced s) {
+                 return s.material.height_map &&
+                        s.material.height_map->silhouette == ReliefSilhouette::curve;
              },
          .only_by_name = true},
         {.effect = one_switch<&F::written_depth>("written depth", "no relief is displaced"),

@@ -265,6 +265,8 @@ void choose_displacement(ShaderSteps& steps, By f) {
                    {"height_march.glsl#rows_repeated", rows(Wrap::repeat)},
                    {"height_march.glsl#rows_clamped", rows(Wrap::clamp)},
                    {"height_march.glsl#rows_mirrored", rows(Wrap::mirror)},
+                   {"height_curve.glsl#curved", f.curved_relief},
+                   {"height_edge.glsl#curved", f.curved_relief && !clips_u && !clips_v},
                    {"height_edge.glsl#clip_both", clips_u && clips_v},
                    {"height_edge.glsl#clip_u", clips_u && !clips_v},
                    {"height_edge.glsl#clip_v", clips_v && !clips_u},

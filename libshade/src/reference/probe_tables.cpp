@@ -180,6 +180,7 @@ constexpr std::array all_effects = {
     E{"maximum mipmaps", R::texcoord},
     E{"self-shadow", R::factor, "L"},
     E{"clipped relief", R::coverage},
+    E{"curved relief", R::coverage},
     E{"written depth", R::storage},
     E{"displaced shadow", R::factor, "L"},
     E{"directional lights", R::term, "diffuse"},

@@ -348,7 +348,9 @@ struct ReliefHit {
     glm::dvec3 normal_world{0.0};   ///< Of the surface, as interpolated; unit.
     glm::dvec3 along_x_world{0.0};  ///< The edges of a texel.
     glm::dvec3 along_y_world{0.0};
-    double texel_world = 0.0;  ///< The square root of its area.
+    double texel_world = 0.0;     ///< The square root of its area.
+    HeightCurvature curvature;    ///< Zero unless the material's relief curves with the surface.
+    bool leaves_surface = false;  ///< The view leaves the curved relief: nothing is drawn.
 };
 
 /// Interpolated attributes at a hit, and the normal: interpolated or of the plane, bent by a normal
@@ -397,8 +399,8 @@ inline bool has_displaced_shadow(const Material& material) {
     return material.height_map && material.height_map->write_depth;
 }
 
-/// Tells whether the view leaves the material's height map where it is clamped, so that nothing is
-/// drawn.
+/// Tells whether the view leaves the material's height map where it is clamped, or a relief that
+/// curves with the surface, so that nothing is drawn.
 bool is_clipped(const Material& material, const Surface& surface);
 
 /// Sets the depth of a hit to that of its relief, if the material writes it.

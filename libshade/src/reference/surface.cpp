@@ -566,6 +566,13 @@ std::optional<ReliefHit> relief_frame(const PreparedScene& prepared, const Hit& 
     relief.along_y_world = (p2 * t1.x - p1 * t2.x) / area;
     relief.texel_world =
         std::sqrt(glm::length(glm::cross(relief.along_x_world, relief.along_y_world)));
+    if (material.height_map->silhouette != ReliefSilhouette::curve) return relief;
+    const auto& normals = triangle.instance.normals_world;
+    const glm::dvec3 n1 = normals[corners.y] - normals[corners.x];
+    const glm::dvec3 n2 = normals[corners.z] - normals[corners.x];
+    relief.curvature =
+        height_curvature(triangle.interpolated(normals), relief.along_x_world, relief.along_y_world,
+                         (n1 * t2.y - n2 * t1.y) / area, (n2 * t1.x - n1 * t2.x) / area);
     return relief;
 }
 
@@ -601,12 +608,14 @@ std::optional<ReliefHit> relief_hit(const PreparedScene& prepared, const Hit& hi
     ray.texcoord = surface.texcoord;
     ray.direction = glm::dvec3(*along, 1.0);
     ray.black_depth = relief->black_depth;
-    const HeightHit met = relief->field->first_hit(ray);
+    const CurvedHeightRay curved = curved_ray(ray, relief->curvature);
+    const HeightHit met = relief->field->first_hit(curved.ray);
     relief->texcoord_surface = surface.texcoord;
     relief->texcoord = met.texcoord;
     relief->outward_world = outward_world;
-    relief->beyond =
-        met.depth * relief->texel_world / glm::dot(relief->normal_world, outward_world);
+    relief->leaves_surface = met.end == HeightRayEnd::left;
+    const double plane_depth = (curved.plane.x + curved.plane.y * met.way) * met.way;
+    relief->beyond = plane_depth * relief->texel_world / glm::dot(relief->normal_world, outward_world);
     return relief;
 }
 
@@ -717,6 +726,7 @@ bool is_shadowed(const ReliefHit& relief, const glm::dvec3& light_world) {
 
 bool is_clipped(const Material& material, const Surface& surface) {
     if (!surface.relief || material.height_map->silhouette == ReliefSilhouette::none) return false;
+    if (surface.relief->leaves_surface) return true;
     const auto leaves = [](double from, double to) {
         return (to < 0.0 || to > 1.0) && from >= 0.0 && from <= 1.0;
     };

@@ -151,6 +151,7 @@ const std::vector<FeatureField>& feature_fields() {
         field<&F::height_wrap_v, 3>("wrap of heights along v"),
         field<&F::self_shadow>("self-shadow"),
         field<&F::clipped_relief>("clipped relief"),
+        field<&F::curved_relief>("curved relief"),
         field<&F::written_depth>("written depth"),
         field<&F::displaced_shadow>("displaced shadow"),
         field<&F::ambient>("ambient"),
@@ -276,6 +277,7 @@ void add_textures(Scene& scene, Material& m, const Features& f) {
         map.method = static_cast<HeightMethod>(static_cast<int>(f.depth_mapping) - 1);
         map.self_shadow = f.self_shadow;
         if (f.clipped_relief) map.silhouette = ReliefSilhouette::clip;
+        if (f.curved_relief) map.silhouette = ReliefSilhouette::curve;
         map.write_depth = f.written_depth;
         if (f.depth_mapping == DepthMapping::relaxed_cones) map.cones = data("cones", 22, 0);
         m.height_map = map;

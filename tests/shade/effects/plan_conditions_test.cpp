@@ -410,6 +410,8 @@ std::vector<Boundary> normal_boundaries() {
          {relief_by_cones, clamped_heights, clipped_relief},
          {no_cones},
          {}},
+        {"curved relief", "asked for", {maximum_mipmaps}, {}, {curved_relief}},
+        {"curved relief", "depth", {maximum_mipmaps, curved_relief}, {no_depth}, {}},
         {"written depth", "asked for", {maximum_mipmaps}, {}, {written_depth}},
         {"written depth", "depth", {maximum_mipmaps, written_depth}, {no_depth}, {}},
         {"displaced shadow", "its depth", {maximum_mipmaps, shadowed}, {}, {written_depth}},

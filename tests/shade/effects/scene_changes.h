@@ -158,6 +158,9 @@ inline const Change self_shadow = [](Frame& f) { f.material().height_map->self_s
 inline const Change clipped_relief = [](Frame& f) {
     f.material().height_map->silhouette = ReliefSilhouette::clip;
 };
+inline const Change curved_relief = [](Frame& f) {
+    f.material().height_map->silhouette = ReliefSilhouette::curve;
+};
 inline const Change clamped_heights = [](Frame& f) {
     f.material().height_map->texture.wrap_v = Wrap::clamp;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The optional effects of a relief: its shadows on itself, its silhouette, and its depth, in OpenGL
+// The optional effects of a relief: its shadows on itself, its silhouette, its depth and its
+// curvature, in OpenGL
 // against the reference and against closed forms.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -75,8 +76,9 @@ class ReliefEffects : public test::DrawTest {
         return render(scene, plan, settings).image;
     }
     /// Compares OpenGL with the reference, where rounding does not decide a pixel.
+    /// \param compared_share  at least this share of the pixels is compared
     /// \return the share of pixels that differ by more than 2 codes
-    [[nodiscard]] double differing(const Scene& scene) const {
+    [[nodiscard]] double differing(const Scene& scene, double compared_share = 0.33) const {
         const Image picture = drawn(scene);
         const Reference reference = render_reference(scene, {.width = pixels, .height = pixels});
         int compared = 0;
@@ -90,7 +92,7 @@ class ReliefEffects : public test::DrawTest {
                 different += apart.x > 2.0 / 255.0 || apart.a > 2.0 / 255.0 ? 1 : 0;
             }
         }
-        EXPECT_GT(compared, pixels * pixels / 3);
+        EXPECT_GT(compared, compared_share * pixels * pixels);
         return static_cast<double>(different) / std::max(compared, 1);
     }
 };
@@ -344,6 +346,165 @@ TEST_F(ReliefEffects, WrittenDepthIsThatOfTheReference) {
     scene.camera->far = 2000.0F;
     EXPECT_FALSE(reason_of(scene, "written depth").on);
     EXPECT_THAT(reason_of(scene, "written depth").reason, HasSubstr("deep, less than 0.5"));
+}
+
+// Curvature
+
+/// A cylinder of radius 1 around the y axis, 3 long. The map repeats 4 times around it, upright,
+/// and its texels are squares.
+Mesh upright_cylinder() {
+    constexpr int around = 64;
+    const double turn = 2.0 * 3.141592653589793;
+    Mesh mesh;
+    for (int i = 0; i <= around; ++i) {
+        for (const double y : {1.5, -1.5}) {
+            const double angle = turn * i / around;
+            mesh.normals.emplace_back(std::sin(angle), 0.0, std::cos(angle));
+            mesh.positions.emplace_back(std::sin(angle), y, std::cos(angle));
+            mesh.texcoords.emplace_back(4.0 * i / around, (1.5 - y) * 4.0 / turn);
+        }
+    }
+    for (std::uint32_t i = 0; i < 2 * around; i += 2) {
+        mesh.triangles.emplace_back(i, i + 1, i + 3);
+        mesh.triangles.emplace_back(i, i + 3, i + 2);
+    }
+    mesh.material_ranges = {{0, static_cast<std::uint32_t>(mesh.triangles.size()), 0}};
+    return mesh;
+}
+
+constexpr double cylinder_texel = 2.0 * 3.141592653589793 / (4.0 * map_side);
+
+/// The relief around the cylinder, which curves.
+Scene around_cylinder(const Image& heights, const Camera& camera, float depth) {
+    Scene scene = square(heights, camera, depth);
+    scene.meshes[0] = upright_cylinder();
+    map_of(scene).texture.wrap_u = map_of(scene).texture.wrap_v = Wrap::repeat;
+    map_of(scene).silhouette = ReliefSilhouette::curve;
+    scene.materials[0].diffuse_texture = Texture{0};
+    scene.materials[0].ambient = glm::vec3(1.0F);
+    scene.ambient = glm::vec3(1.0F);
+    return scene;
+}
+
+int covered_in_row(const Image& image, int row) {
+    int count = 0;
+    for (int x = 0; x < image.width; ++x)
+        count += test::pixel(image, x, row).a > 0.0 ? 1 : 0;
+    return count;
+}
+
+/// A constant height is a thinner cylinder, whose outline every method shows.
+TEST_F(ReliefEffects, TheOutlineOfACylinderIsThatOfItsRelief) {
+    constexpr float depth = 8.0F;
+    constexpr double pixels_per_unit = pixels / 2.4;
+    for (const double height : {0.0, 0.5}) {
+        Camera camera = parallel(0.0);
+        camera.orthographic_height = 2.4F;
+        Scene scene = around_cylinder(heights_by([&](int, int) { return height; }), camera, depth);
+        ASSERT_TRUE(reason_of(scene, "curved relief").on);
+        const double radius = 1.0 - static_cast<double>(depth) * (1.0 - height) * cylinder_texel;
+        for (const HeightMethod method :
+             {HeightMethod::maximum_mipmaps, HeightMethod::parallax,
+              HeightMethod::parallax_occlusion, HeightMethod::relief_mapping}) {
+            map_of(scene).method = method;
+            const Image image = drawn(scene);
+            for (const int row : {20, 80, 150})
+                EXPECT_NEAR(covered_in_row(image, row), 2.0 * radius * pixels_per_unit, 1.5)
+                    << enum_name(method) << ", height " << height;
+        }
+        map_of(scene).method = HeightMethod::maximum_mipmaps;
+        EXPECT_LT(differing(scene, 0.15), 0.002);
+        map_of(scene).silhouette = ReliefSilhouette::none;
+        EXPECT_NEAR(covered_in_row(drawn(scene), 80), 2.0 * pixels_per_unit, 1.5);
+    }
+}
+
+/// On bumps: around a cylinder and over a sphere, with shadows, depth, borders, perspective, and
+/// coordinates that are mirrored and stretched.
+TEST_F(ReliefEffects, CurvedReliefsAreThoseOfTheReference) {
+    Camera camera = slanted(25.0);
+    camera.vertical_fov = 0.45F;
+    const Scene cylinder = around_cylinder(bumps(), camera, 6.0F);
+    Scene with_effects = cylinder;
+    map_of(with_effects).write_depth = true;
+    map_of(with_effects).self_shadow = true;
+    with_effects.directional_lights = {from_the_left(40.0)};
+    Scene with_border = cylinder;
+    map_of(with_border).texture.wrap_v = Wrap::clamp;
+    Scene stretched = cylinder;
+    for (glm::vec2& texcoord : stretched.meshes[0].edit().texcoords)
+        texcoord *= glm::vec2(-0.6F, 1.4F);
+    Scene sphere = cylinder;
+    Mesh round = test::sphere(48, 24);
+    round.material_ranges = {{0, static_cast<std::uint32_t>(round.triangles.size()), 0}};
+    sphere.meshes[0] = round;
+    for (glm::vec2& texcoord : sphere.meshes[0].edit().texcoords)
+        texcoord *= glm::vec2(4.0F, 2.0F);
+    for (const Scene& scene : {cylinder, with_effects, with_border, stretched, sphere}) {
+        ASSERT_TRUE(reason_of(scene, "curved relief").on);
+        Scene flat = scene;
+        map_of(flat).silhouette = ReliefSilhouette::none;
+        const double apart = differing(scene);
+        std::printf("apart %g flat %g\n", apart, differing(flat));
+        EXPECT_LT(apart, 0.015);
+        EXPECT_FALSE(test::same_bits(drawn(flat), drawn(scene)));
+    }
+}
+
+/// A plane in front of a part of the cylinder hides its relief where |x| > sqrt(r^2 - z^2).
+TEST_F(ReliefEffects, CurvedReliefsWriteTheDepthOfTheCylinder) {
+    constexpr float depth = 6.0F;
+    Camera camera = parallel(0.0);
+    camera.orthographic_height = 2.4F;
+    Scene scene = with_plane(around_cylinder(black(), camera, depth));
+    constexpr double z = 0.2;
+    for (glm::vec3& position : scene.meshes[1].edit().positions)
+        position.z = static_cast<float>(z);
+    for (glm::vec3& normal : scene.meshes[1].edit().normals)
+        normal = {0.0F, 0.0F, 1.0F};
+    map_of(scene).write_depth = true;
+    const auto relief_pixels = [&] {
+        const Image image = drawn(scene);
+        int count = 0;
+        for (int x = 0; x < pixels; ++x)
+            count += test::pixel(image, x, 80).r < 0.9 ? 1 : 0;
+        return count;
+    };
+    const double radius = 1.0 - static_cast<double>(depth) * cylinder_texel;
+    const double expected = 2.0 * std::sqrt(radius * radius - z * z) * pixels / 2.4;
+    EXPECT_NEAR(relief_pixels(), expected, 2.0);
+    EXPECT_LT(differing(scene, 0.15), 0.002);
+    // The depth of a relief on the plane is that of black also where the surface falls away.
+    map_of(scene).silhouette = ReliefSilhouette::none;
+    EXPECT_GT(std::abs(relief_pixels() - expected), 3.0);
+}
+
+TEST_F(ReliefEffects, CurvatureIsLeftOutWhereItCannotShow) {
+    Scene flat = square(bumps(), slanted(50.0), 6.0F);
+    flat.materials[0].diffuse_texture = Texture{0};
+    map_of(flat).texture.wrap_u = map_of(flat).texture.wrap_v = Wrap::repeat;
+    const Image without = drawn(flat);
+    EXPECT_THAT(reason_of(flat, "curved relief").reason, HasSubstr("does not request it"));
+    map_of(flat).silhouette = ReliefSilhouette::curve;
+    EXPECT_THAT(reason_of(flat, "curved relief").reason, HasSubstr("covers flat triangles only"));
+    EXPECT_TRUE(test::same_bits(drawn(flat), without));
+    // Requested by name, it changes no pixel there.
+    EXPECT_TRUE(
+        test::same_bits(drawn(flat, {EffectBase::planned, {{"curved relief", true}}}), without));
+
+    Camera camera = parallel(0.0);
+    Scene scene = around_cylinder(bumps(), camera, 6.0F);
+    EXPECT_THAT(reason_of(scene, "curved relief").reason, HasSubstr("the curvature moves"));
+    const Image curved = drawn(scene);
+    const Image off = drawn(scene, {EffectBase::planned, {{"curved relief", false}}});
+    EXPECT_FALSE(test::same_bits(curved, off));
+    map_of(scene).silhouette = ReliefSilhouette::none;
+    EXPECT_TRUE(test::same_bits(drawn(scene), off));
+    map_of(scene).silhouette = ReliefSilhouette::curve;
+    // Half a pixel of depth: a texel is 1.6 pixels wide at a height of 2.4.
+    scene.camera->orthographic_height = 60.0F;
+    EXPECT_FALSE(reason_of(scene, "curved relief").on);
+    EXPECT_THAT(reason_of(scene, "curved relief").reason, HasSubstr("less than 0.5"));
 }
 
 }  // namespace relief

@@ -100,13 +100,14 @@ struct BumpMap {
 
 /// How a relief ends where the view leaves its height map.
 enum class ReliefSilhouette {
-    none,  ///< The map continues by its wrap modes.
-    clip,  ///< Nothing is drawn beyond [0,1] along axes that are clamped.
+    none,   ///< The map continues by its wrap modes.
+    clip,   ///< Nothing is drawn beyond [0,1] along axes that are clamped.
+    curve,  ///< As clip; and the relief curves with the surface, at whose outline it ends.
 };
 
 /// Heights that show a surface's textures displaced along the view: relief mapping. Normals come
 /// from the normal or bump map, which may be the same image. The relief lies below the surface of
-/// white and in the tangent plane of the interpolated normal.
+/// white and in the tangent plane of the interpolated normal, unless it curves with the surface.
 struct ReliefMap {
     Texture texture;      ///< Red is the height; white is at the surface.
     float depth = 16.0F;  ///< Of black below white, in texels: the square root of a texel's area.
@@ -258,8 +259,10 @@ template <>
 inline constexpr auto enum_names<TangentFrame> = std::to_array<EnumName<TangentFrame>>(
     {{"stored", TangentFrame::stored}, {"derivatives", TangentFrame::derivatives}});
 template <>
-inline constexpr auto enum_names<ReliefSilhouette> = std::to_array<EnumName<ReliefSilhouette>>(
-    {{"none", ReliefSilhouette::none}, {"clip", ReliefSilhouette::clip}});
+inline constexpr auto enum_names<ReliefSilhouette> =
+    std::to_array<EnumName<ReliefSilhouette>>({{"none", ReliefSilhouette::none},
+                                               {"clip", ReliefSilhouette::clip},
+                                               {"curve", ReliefSilhouette::curve}});
 template <>
 inline constexpr auto enum_names<NormalSpace> = std::to_array<EnumName<NormalSpace>>(
     {{"tangent", NormalSpace::tangent}, {"object", NormalSpace::object}});

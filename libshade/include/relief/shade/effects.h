@@ -115,6 +115,7 @@ struct Features {
     Wrap height_wrap_v = Wrap::repeat;
     bool self_shadow = false;     ///< The relief hides light from its own points.
     bool clipped_relief = false;  ///< Nothing is drawn where the view leaves a map that is clamped.
+    bool curved_relief = false;   ///< The relief curves with the surface, and ends at its outline.
     bool written_depth = false;   ///< The depth buffer gets the depth of the relief.
     /// Shadow maps hold the depth of the relief, and its points look them up.
     bool displaced_shadow = false;
