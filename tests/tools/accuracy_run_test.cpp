@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <numbers>
 
 #include <nlohmann/json.hpp>
 
@@ -303,6 +304,77 @@ TEST(AccuracyOwn, CanKeepANormalMapUnchanged) {
     ASSERT_EQ(workplace.run("relief-bake convert map.png out.png").exit_code, 0);
     EXPECT_TRUE(read_image(workplace / "out.png", ImageUse::data).samples ==
                 read_image(workplace / "map.png", ImageUse::data).samples);
+}
+
+/// On constant heights, the distance of a view from its point on the surface is the depth there
+/// times the tangent of the angle.
+TEST_LABELS(not_sanitized);
+TEST(AccuracyOwn, MeasuresReliefMappingBetweenTwoAngles) {
+    const Workplace workplace;
+    Image heights = make_image(16, 16, 1, 8, ColorSpace::data);
+    for (std::uint8_t& code : heights.as<std::uint8_t>())
+        code = 51;  // A fifth: of 10 texels, 8 are left.
+    write_image(workplace / "flat.png", heights);
+    const auto measured = [&](const std::string& angles) {
+        return own_report(workplace,
+                          "flat.png --image heights --height-depth 10 --view-angles " + angles);
+    };
+    const json at_60 = measured("60,60");
+    EXPECT_EQ(at_60["command"],
+              "relief-accuracy own flat.png --image heights --height-depth 10 --view-angles 60,60 "
+              "--quick --no-times");
+    ASSERT_EQ(at_60["experiments"].size(), 2U);
+    const json& relief = at_60["experiments"][1];
+    EXPECT_EQ(relief["id"], "own/flat.png/relief");
+    EXPECT_EQ(relief["input"],
+              "16 x 16 texels, 10 deep, on a plane; 60 to 60 degrees from its normal");
+    // Distances are stored as floats.
+    for (const char* kind : {"rms", "mean", "p99", "max"})
+        EXPECT_NEAR(error_of(relief, "normal map")[kind].get<double>(), 8.0 * std::sqrt(3.0), 1e-6);
+    EXPECT_EQ(error_of(relief, "normal map")["count"], 2000);
+    EXPECT_EQ(error_of(relief, "parallax")["max"], 0.0);
+    EXPECT_EQ(error_of(relief, "maximum mipmaps")["max"], 0.0);
+    // Between two angles, the mean is that of the tangent: ln(cos A / cos B) / (B - A).
+    const json between = measured("30,60")["experiments"][1];
+    const double mean = 8.0 * std::log(std::sqrt(3.0)) / (std::numbers::pi / 6.0);
+    EXPECT_NEAR(error_of(between, "normal map")["mean"].get<double>(), mean, 0.2);
+    EXPECT_LE(error_of(between, "normal map")["max"].get<double>(), 8.0 * std::sqrt(3.0));
+    EXPECT_EQ(error_of(measured("0,0")["experiments"][1], "normal map")["max"], 0.0);
+    // Where heights change, parallax has an error, which grows with the angle.
+    workplace.write_bricks("bricks.png");
+    const auto of_parallax = [&](const std::string& angles) {
+        const json report =
+            own_report(workplace, "bricks.png --height-depth 12 --view-angles " + angles);
+        const json& bricks = report["experiments"][1];
+        EXPECT_EQ(error_of(bricks, "maximum mipmaps")["max"], 0.0);
+        return error_of(bricks, "parallax")["rms"].get<double>();
+    };
+    const double steep = of_parallax("0,30");
+    EXPECT_NEAR(steep, 0.26, 0.05);  // Of 2,000 rays on a corner of the bricks.
+    EXPECT_GT(of_parallax("60,80"), 10.0 * steep);
+}
+
+TEST(OwnRefusal, NamesWrongDepthsAndAngles) {
+    const Workplace workplace;
+    workplace.write_square("square.obj");
+    workplace.write_bricks("h.png");
+    const std::string angles = "not two ascending angles within 0 to 89";
+    const std::string own = "relief-accuracy own h.png --height-depth 8 --view-angles ";
+    expect_refusals(workplace, "relief-accuracy", "old",
+                    {{own + "60,45", 2, "--view-angles 60,45: " + angles},
+                     {own + "45,90", 2, "--view-angles 45,90: " + angles},
+                     {own + "-5,20", 2, "--view-angles -5,20: " + angles},
+                     {own + "45", 2, "--view-angles 45: " + angles},
+                     {own + "45,60,70", 2, "--view-angles 45,60,70: " + angles},
+                     {own + "steep,60", 2, "--view-angles steep,60: 'steep': not a number"},
+                     {"relief-accuracy own h.png --view-angles 45,60", 2,
+                      "--view-angles: applies only to relief mapping, --height-depth"},
+                     {"relief-accuracy own h.png --height-depth 0", 2,
+                      "--height-depth 0: not between 0.01 and 16384 texels"},
+                     {"relief-accuracy own square.obj --height-depth 8", 2,
+                      "--height-depth: applies only to height maps"},
+                     {"relief-accuracy own h.png --image normals --height-depth 8", 2,
+                      "--height-depth: applies only to height maps"}});
 }
 
 TEST(OwnRefusal, IsOneLine) {

@@ -486,8 +486,8 @@ void add_input_options(CLI::App& app, AssetRequest& request) {
                   const std::vector<double> angles = parse_numbers(subject, text);
                   if (angles.size() != 2 ||
                       !(0.0 <= angles[0] && angles[0] <= angles[1] && angles[1] <= 89.0))
-                      throw UsageError(fmt::format(
-                          "{} '{}': not two ascending angles within 0 to 89", subject, text));
+                      throw UsageError(
+                          fmt::format("{}: not two ascending angles within 0 to 89", subject));
                   request.view_degrees = glm::dvec2(angles[0], angles[1]);
               })
         .group(image);
