@@ -277,11 +277,10 @@ TEST(ViewPage, RefusesMoreRowsThanATextureHolds) {
     EXPECT_EQ(workplace.outputs(), "") << "nothing is written";
 }
 
-/// Runs view_page_test.py.
-void expect_equal_pictures(const std::string& arguments) {
+/// Runs a script of this folder.
+void expect_passing(const std::string& name, const std::string& arguments) {
     const Workplace workplace;
-    const std::filesystem::path script =
-        test::source_directory() / "tests/tools/view_page/view_page_test.py";
+    const std::filesystem::path script = test::source_directory() / "tests/tools/view_page" / name;
     const ProgramResult result = workplace.run("python3 -B '" + script.string() +
                                                "' \"$(command -v relief-view)\" . " + arguments);
     constexpr int no_browser = 77;
@@ -291,12 +290,17 @@ void expect_equal_pictures(const std::string& arguments) {
 
 TEST_LABELS(not_sanitized);
 TEST(ViewPage, WorksInABrowser) {
-    expect_equal_pictures("few '' ViewPage");
+    expect_passing("view_page_test.py", "few '' ViewPage");
+}
+
+TEST_LABELS(not_sanitized);
+TEST(ViewPage, FollowsInputInABrowser) {
+    expect_passing("page_input_test.py", "few '' PageInput");
 }
 
 TEST_LABELS(not_sanitized);
 TEST(ViewPage, TeachesInABrowser) {
-    expect_equal_pictures("few '' LessonPage");
+    expect_passing("view_page_test.py", "few '' LessonPage");
 }
 
 /// Every fourth of all scenes and models, from one of them on.
@@ -304,9 +308,10 @@ class PageSweep : public testing::TestWithParam<int> {};
 
 TEST_LABELS(slow, sweep, not_sanitized);
 TEST_P(PageSweep, ShowsScenesInABrowser) {
-    expect_equal_pictures(std::to_string(GetParam()) + "/4 '" + test::shared_directory().string() +
-                          "' ViewPage.test_draws_the_same_picture "
-                          "ViewPage.test_deforms_as_the_renderer_does");
+    expect_passing("view_page_test.py", std::to_string(GetParam()) + "/4 '" +
+                                            test::shared_directory().string() +
+                                            "' ViewPage.test_draws_the_same_picture "
+                                            "ViewPage.test_deforms_as_the_renderer_does");
 }
 
 INSTANTIATE_TEST_SUITE_P(Parts, PageSweep, testing::Range(0, 4));

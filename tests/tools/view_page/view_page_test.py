@@ -27,9 +27,10 @@ SIZE = (256, 192)
 # to 1/16 of a pixel and Mesa to 1/256, and where they choose levels of cube maps for curved mirrors:
 # at most in 4.8 % of the pixels (lighting-and-environment.json). FLIP says what is seen of it.
 MAX_FLIP = 0.01
-# Nearly all of its surfaces are small curved mirrors.
-MAX_FLIP_OF = {"MetalRoughSpheresNoTextures": 0.016}
 MAX_SHARE = 0.06
+# In SIZE, each pixel of its spheres has 40 triangles, so that those vertices decide what is drawn, and
+# SwiftShader's depths (test_knows_the_depths_of_samples of page_input_test.py): FLIP 0.0153.
+SIZE_OF = {"MetalRoughSpheresNoTextures": (512, 384)}
 FEW = ["data/vase.obj --height-map data/bricks-height.png --strength 12",
        "data/scenes/environment-mapping.json", "data/scenes/pot.glb --samples 1",
        "data/scenes/relief-mapping.json --height-shadow on --height-write-depth on",
@@ -158,12 +159,12 @@ class ViewPage(PageTest):
     def test_draws_the_same_picture(self):
         for case in cases():
             with self.subTest(case):
-                difference = pages.compared(TOOL, self.window, case.split(), self.work / "case", *SIZE)
-                share = difference["pixels_above"] / (SIZE[0] * SIZE[1])
+                size = next((size for name, size in SIZE_OF.items() if name in case), SIZE)
+                difference = pages.compared(TOOL, self.window, case.split(), self.work / "case", *size)
+                share = difference["pixels_above"] / (size[0] * size[1])
                 print(f"{difference['max']:5.0f} {share:9.5f} {difference['flip_mean']:9.5f}  {case}",
                       flush=True)
-                most = next((limit for name, limit in MAX_FLIP_OF.items() if name in case), MAX_FLIP)
-                self.assertLess(difference["flip_mean"], most)
+                self.assertLess(difference["flip_mean"], MAX_FLIP)
                 self.assertLess(share, MAX_SHARE)
 
     def test_draws_all_passes(self):
@@ -583,7 +584,9 @@ class LessonPage(PageTest):
             self.assertEqual(b"".join(rows[384 * y:384 * (y + 1)] for y in reversed(range(72))), alone[name])
 
 
-if __name__ == "__main__":
+def main():
+    """Runs the tests of the script that was started, which may be another one that uses PageTest."""
+    global TOOL, FOLDER, SCOPE, SHARED
     TOOL, FOLDER, SCOPE = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), sys.argv[3]
     SHARED = pathlib.Path(sys.argv[4]) if sys.argv[4] and pathlib.Path(sys.argv[4]).is_dir() else None
     if pages.browser.programs() is None:
@@ -591,3 +594,7 @@ if __name__ == "__main__":
         sys.exit(77)
     os.chdir(FOLDER)
     unittest.main(argv=[sys.argv[0], *sys.argv[5:]])
+
+
+if __name__ == "__main__":
+    main()
