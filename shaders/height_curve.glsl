@@ -6,8 +6,9 @@
 // surface above it along another normal. With the turn B of the normal, a ray that is at x = k s and
 // at the depth s on the plane is at the depth d = s - x B y / 2 with y = (1 - (s + d) B / 2)^-1 x, and
 // its coordinates are twice the angle whose tangent is B y / 2, divided by B: exactly on spheres and
-// cylinders, and to the second order on other surfaces. The parabola through three of its points is
-// the path in texel space, so that coordinates stay linear along the ray.
+// cylinders, and to the second order on other surfaces. The path in texel space is a parabola above
+// the line from its beginning through its middle, so that coordinates stay linear along the ray: it
+// has the depths of the ray at its beginning, middle and end.
 
 //@include "height_march.glsl#ray"
 //@include "height_march.glsl#field"
@@ -95,18 +96,20 @@ BentRay bent_ray_of(vec2 k, Curvature curvature) {
     float s = last_depth(k, curvature);
     vec3 middle = point_at(k, curvature, 0.5 * s);
     vec3 end = point_at(k, curvature, s);
-    // Over the share t of the chord of the coordinates, the depth is a t - b t^2.
-    float chord_squared = dot(end.xy, end.xy);
-    float share = dot(middle.xy, end.xy) / chord_squared;
+    // Over the share t of the way along the line, the depth is a t - b t^2.
+    vec2 covector = curvature.metric * middle.xy;
+    float middle_squared = dot(covector, middle.xy);
+    float share = middle_squared / dot(covector, end.xy);
     float weight = share * (1.0 - share);
-    if (!(end.z > 0.0 && chord_squared > 1e-20 && weight > 0.1)) return straight;
+    if (!(end.z > 0.0 && middle_squared > 1e-20 && weight > 0.1)) return straight;
     float b = (middle.z - share * end.z) / weight;
     float a = max(end.z + b, 1e-3 * end.z);
     float aside = s * (0.5 - share) / weight;
-    return BentRay(end.xy / a, b / (a * a), vec2((s + aside) / a, -aside / (a * a)));
+    return BentRay(middle.xy / (share * a), b / (a * a), vec2((s + aside) / a, -aside / (a * a)));
 }
 
-BentRay bent_ray = bent_ray_of(view_texels.xy, curvature_here());
+Curvature curvature = curvature_here();
+BentRay bent_ray = bent_ray_of(view_texels.xy, curvature);
 
 vec2 ray_slant() { return bent_ray.slant; }
 
@@ -131,8 +134,14 @@ float ray_end() { return leaves_relief ? 1.0 / bent_ray.bend : way_to(height_dep
 
 float plane_depth(float way) { return (bent_ray.plane.x + bent_ray.plane.y * way) * way; }
 
+// A front face whose interpolated normal points away from the eye is beyond the outline.
+bool faces_away() {
+    return gl_FrontFacing && curvature.turn != mat2(0.0) &&
+           dot(normal_world, to_eye(position_world)) < 0.0;
+}
+
 // Loops reach the end of the ray to rounding only.
-bool is_left(float way) { return leaves_relief && way >= 0.9999 * ray_end(); }
+bool is_left(float way) { return faces_away() || (leaves_relief && way >= 0.9999 * ray_end()); }
 
 //@neutral ray_curve
 vec2 ray_slant() { return view_texels.xy; }

@@ -107,16 +107,17 @@ CurvedHeightRay curved_ray(const HeightRay& ray, const HeightCurvature& curvatur
     const double s = last_depth(k, bounded, black_depth);
     const CurvedPoint middle = point_at(k, bounded, 0.5 * s);
     const CurvedPoint end = point_at(k, bounded, s);
-    // Over the share t of the chord of the coordinates, the depth is a t - b t^2.
-    const double chord_squared = glm::dot(end.texels, end.texels);
-    const double share = glm::dot(middle.texels, end.texels) / chord_squared;
+    // Over the share t of the way along the line, the depth is a t - b t^2.
+    const glm::dvec2 covector = bounded.metric * middle.texels;
+    const double middle_squared = glm::dot(covector, middle.texels);
+    const double share = middle_squared / glm::dot(covector, end.texels);
     const double weight = share * (1.0 - share);
     constexpr double min_weight = 0.1;
-    if (!(end.depth > 0.0) || !(chord_squared > 1e-20) || !(weight > min_weight)) return curved;
+    if (!(end.depth > 0.0) || !(middle_squared > 1e-20) || !(weight > min_weight)) return curved;
     const double b = (middle.depth - share * end.depth) / weight;
     const double a = std::max(end.depth + b, 1e-3 * end.depth);
     const double aside = s * (0.5 - share) / weight;
-    curved.ray.direction = glm::dvec3(end.texels / a, 1.0);
+    curved.ray.direction = glm::dvec3(middle.texels / (share * a), 1.0);
     curved.ray.bend = b / (a * a);
     curved.plane = {(s + aside) / a, -aside / (a * a)};
     return curved;

@@ -602,20 +602,27 @@ std::optional<ReliefHit> relief_hit(const PreparedScene& prepared, const Hit& hi
                                     const glm::dvec3& outward_world) {
     std::optional<ReliefHit> relief = relief_frame(prepared, hit, material);
     if (!relief) return std::nullopt;
+    relief->outward_world = outward_world;
+    relief->texcoord_surface = relief->texcoord = surface.texcoord;
     const auto along = texels_per_depth(*relief, outward_world);
-    if (!along) return std::nullopt;
+    if (!along) {
+        // A front face whose interpolated normal points away from the eye is beyond the outline.
+        relief->leaves_surface = !is_back(prepared, hit) &&
+                                 relief->curvature.turn != glm::dmat2(0.0) &&
+                                 glm::dot(relief->normal_world, outward_world) < 0.0;
+        return relief->leaves_surface ? relief : std::nullopt;
+    }
     HeightRay ray;
     ray.texcoord = surface.texcoord;
     ray.direction = glm::dvec3(*along, 1.0);
     ray.black_depth = relief->black_depth;
     const CurvedHeightRay curved = curved_ray(ray, relief->curvature);
     const HeightHit met = relief->field->first_hit(curved.ray);
-    relief->texcoord_surface = surface.texcoord;
     relief->texcoord = met.texcoord;
-    relief->outward_world = outward_world;
     relief->leaves_surface = met.end == HeightRayEnd::left;
     const double plane_depth = (curved.plane.x + curved.plane.y * met.way) * met.way;
-    relief->beyond = plane_depth * relief->texel_world / glm::dot(relief->normal_world, outward_world);
+    relief->beyond =
+        plane_depth * relief->texel_world / glm::dot(relief->normal_world, outward_world);
     return relief;
 }
 

@@ -419,6 +419,7 @@ void add_surroundings(Scene& scene, const Features& f) {
 /// Returns the closest features that a scene can need.
 Features attainable(Features f) {
     f.lights_in_buffer = false;
+    if (f.curved_relief) f.clipped_relief = true;  // Along axes that are clamped.
     const bool lights = f.directional_lights + f.point_lights + f.spot_lights > 0;
     const bool environment = f.environment_diffuse || f.reflection != ReflectionTerm::none;
     if (f.falloff == FalloffTerm::mixed && f.point_lights + f.spot_lights == 1) {

@@ -161,6 +161,9 @@ inline const Change clipped_relief = [](Frame& f) {
 inline const Change curved_relief = [](Frame& f) {
     f.material().height_map->silhouette = ReliefSilhouette::curve;
 };
+inline const Change bent_normals = [](Frame& f) {
+    f.mesh().normals.at(0) = glm::normalize(glm::vec3(0.3F, 0.0F, 1.0F));
+};
 inline const Change clamped_heights = [](Frame& f) {
     f.material().height_map->texture.wrap_v = Wrap::clamp;
 };

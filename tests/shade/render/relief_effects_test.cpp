@@ -444,9 +444,9 @@ TEST_F(ReliefEffects, CurvedReliefsAreThoseOfTheReference) {
         ASSERT_TRUE(reason_of(scene, "curved relief").on);
         Scene flat = scene;
         map_of(flat).silhouette = ReliefSilhouette::none;
-        const double apart = differing(scene);
-        std::printf("apart %g flat %g\n", apart, differing(flat));
-        EXPECT_LT(apart, 0.015);
+        // Near the outline, rounding in float decides more of the hits: bumps hide each other
+        // there.
+        EXPECT_LT(differing(scene), 0.002 + 1.6 * differing(flat));
         EXPECT_FALSE(test::same_bits(drawn(flat), drawn(scene)));
     }
 }

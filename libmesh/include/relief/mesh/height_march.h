@@ -95,10 +95,11 @@ struct CurvedHeightRay {
 ///
 /// \param ray  on the tangent plane, from the surface of white down; its start_depth and bend are
 ///         ignored
-/// \return the parabola through three points of the ray: where it begins, where it reaches black or
-///         is deepest, and at half of the depth on the plane between them. These points are exact
-///         on spheres and cylinders, but for rounding; on other surfaces to the second order. The
-///         ray is straight if the curvature is zero or not finite, and straight down
+/// \return a parabola above the line through the beginning and the middle of the ray, with the
+///         depths of the ray where it begins, where it reaches black or is deepest, and at half of
+///         the depth on the plane between them. These points are exact on spheres and cylinders,
+///         but for rounding; on other surfaces to the second order. The ray is straight if the
+///         curvature is zero or not finite, and straight down
 ///
 /// A radius of curvature of less than twice the depth of black counts as twice the depth. On a
 /// convex surface, a ray that does not reach black leaves through the surface of white. The
