@@ -47,8 +47,8 @@ Curvature curvature_here() {
     float bound = min(1.0, 1.0 / (least_radius * height_depth * sqrt(squared)));
     mat2 metric = mat2(dot(x, x), dot(x, y), dot(x, y), dot(y, y)) / texel_squared;
     // NaN and infinity fail the comparison.
-    return squared > 1e-20 && squared < 1e30 ? Curvature(bound * turn, metric)
-                                             : Curvature(mat2(0.0), mat2(1.0));
+    bool is_usable = squared > 1e-20 && squared < 1e30;
+    return Curvature(is_usable ? bound * turn : mat2(0.0), is_usable ? metric : mat2(1.0));
 }
 
 // Returns the texels from the beginning, and the depth, of the point of a ray at the depth s on the
