@@ -443,10 +443,10 @@ TEST_F(ReliefEffects, CurvedReliefsAreThoseOfTheReference) {
     for (const Scene& scene : {cylinder, with_effects, with_border, stretched, sphere}) {
         ASSERT_TRUE(reason_of(scene, "curved relief").on);
         Scene flat = scene;
-        map_of(flat).silhouette = ReliefSilhouette::none;
-        // Near the outline, rounding in float decides more of the hits: bumps hide each other
-        // there.
-        EXPECT_LT(differing(scene), 0.002 + 1.6 * differing(flat));
+        map_of(flat).silhouette = ReliefSilhouette::clip;
+        // Rounding in float decides more of the hits than on the plane: near the outline, rays pass
+        // closely over bumps.
+        EXPECT_LT(differing(scene), 0.002 + 1.8 * differing(flat));
         EXPECT_FALSE(test::same_bits(drawn(flat), drawn(scene)));
     }
 }
