@@ -40,7 +40,9 @@ void CellMap::clear() {
     for (Level& level : levels_) {
         for (std::vector<BitWord>& table : level.tables)
             table.assign(level.words * static_cast<std::size_t>(level.height + 1), 0);
-        level.longest_free.assign(static_cast<std::size_t>(level.height), {0, level.width});
+        const auto height = static_cast<std::size_t>(level.height);
+        level.longest_free.assign(height, {0, level.width});
+        level.free_length.assign(height, static_cast<std::int16_t>(level.width));
     }
 }
 
@@ -52,6 +54,7 @@ std::optional<CellMap::Position> CellMap::find(const CellMask& mask, const CellM
     end = std::min(end, height() - mask.height + 1);
     const int last = std::min((end - 1) >> level_index, level.height - coarse.height);
     for (int y = first >> level_index; y <= last; ++y) {
+        if (!has_room(coarse, level, y)) continue;
         const std::optional<int> x = free_column(coarse, level, y, count);
         if (!x) continue;
         // The last cells of a level may be larger than the rest of the map.
@@ -63,12 +66,24 @@ std::optional<CellMap::Position> CellMap::find(const CellMask& mask, const CellM
     return std::nullopt;
 }
 
+bool CellMap::has_room(const CellMask& mask, const Level& level, int y) {
+    const std::int16_t* const free = level.free_length.data() + y;
+    const std::int16_t* const longest = mask.longest.data();
+    // Loops without branches, which compilers vectorize.
+    const auto have_room = [&](int begin, int end) {
+        std::int16_t missing = 0;
+        for (int row = begin; row < end; ++row)
+            missing = static_cast<std::int16_t>(missing | (free[row] < longest[row] ? 1 : 0));
+        return missing == 0;
+    };
+    // The middle rows are the longest ones of most charts.
+    const int first = mask.height / 3;
+    const int last = mask.height - first;
+    return have_room(first, last) && have_room(0, first) && have_room(last, mask.height);
+}
+
 std::optional<int> CellMap::free_column(const CellMask& mask, const Level& level, int y,
                                         int count) {
-    for (int row = 0; row < mask.height; ++row) {
-        const Run& free = level.longest_free[static_cast<std::size_t>(y + row)];
-        if (free.end - free.begin < mask.longest(row)) return std::nullopt;
-    }
     const std::size_t words = word_count(count);
     // Positions beyond the last one are blocked.
     std::fill_n(blocked_.begin(), words, BitWord{0});
@@ -196,6 +211,8 @@ void CellMap::renew_tables(Level& level, int y, const Run& changed) {
         if (end - x > longest.end - longest.begin) longest = {x, end};
         x = next_bit(words, end, level.width, false);
     }
+    level.free_length[static_cast<std::size_t>(y)] =
+        static_cast<std::int16_t>(longest.end - longest.begin);
 }
 
 }  // namespace relief::detail

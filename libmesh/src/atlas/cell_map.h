@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -50,7 +51,8 @@ class CellMap {
         std::size_t words = 0;  ///< In a row, with one that is always 0.
         /// Table k has a bit for each position from which a run of 2^k cells meets an occupied one.
         std::vector<std::vector<BitWord>> tables;
-        std::vector<Run> longest_free;  ///< For each row, its longest run of free cells.
+        std::vector<Run> longest_free;          ///< For each row, its longest run of free cells.
+        std::vector<std::int16_t> free_length;  ///< The lengths of these runs.
 
         [[nodiscard]] BitWord* row(std::size_t table, int y) {
             return tables[table].data() + words * static_cast<std::size_t>(y);
@@ -61,6 +63,8 @@ class CellMap {
     };
 
     [[nodiscard]] bool is_free(const CellMask& mask, const Position& at) const;
+    /// Returns whether each run of a mask finds enough free cells in its row, wherever they are.
+    static bool has_room(const CellMask& mask, const Level& level, int y);
     std::optional<int> free_column(const CellMask& mask, const Level& level, int y, int count);
     /// Blocks the positions whose bit, shifted, is set, in the words [begin, end).
     void block(const BitWord* table, int shift, std::size_t begin, std::size_t end);

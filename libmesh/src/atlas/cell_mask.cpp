@@ -40,19 +40,21 @@ class Canvas {
         mask.width = width_;
         mask.height = height_;
         mask.runs.reserve(static_cast<std::size_t>(height_));
-        mask.rows.resize(static_cast<std::size_t>(height_) + 1);
+        mask.first.reserve(static_cast<std::size_t>(height_) + 1);
+        mask.longest.reserve(static_cast<std::size_t>(height_));
         for (int y = 0; y < height_; ++y) {
-            CellMask::Row& row = mask.rows[static_cast<std::size_t>(y)];
-            row.first = static_cast<std::uint32_t>(mask.runs.size());
+            mask.first.push_back(static_cast<std::uint32_t>(mask.runs.size()));
+            int longest = 0;
             const BitWord* const words = bits_ + words_ * static_cast<std::size_t>(y);
             for (int x = next_bit(words, 0, width_, true); x < width_;) {
                 const int end = next_bit(words, x, width_, false);
                 mask.runs.push_back({x, end});
-                row.longest = std::max(row.longest, end - x);
+                longest = std::max(longest, end - x);
                 x = next_bit(words, end, width_, true);
             }
+            mask.longest.push_back(static_cast<std::int16_t>(longest));
         }
-        mask.rows.back().first = static_cast<std::uint32_t>(mask.runs.size());
+        mask.first.push_back(static_cast<std::uint32_t>(mask.runs.size()));
         return mask;
     }
 
@@ -66,22 +68,37 @@ class Canvas {
 };
 
 /// Sets the cells that are within the margin of an edge.
-void draw_edge(const glm::dvec2& a, const glm::dvec2& b, double margin, double cell,
+void draw_edge(const glm::dvec2& a, const glm::dvec2& b, const Margin& margin, double cell,
                Canvas& canvas) {
     const glm::dvec2& low = a.y < b.y ? a : b;
     const glm::dvec2& high = a.y < b.y ? b : a;
-    const int first = std::max(static_cast<int>(std::floor((low.y - margin) / cell)), 0);
+    const int first = std::max(static_cast<int>(std::floor((low.y - margin.side) / cell)), 0);
     const int last =
-        std::min(static_cast<int>(std::floor((high.y + margin) / cell)), canvas.height() - 1);
-    const double slope = high.y > low.y ? (high.x - low.x) / (high.y - low.y) : 0.0;
+        std::min(static_cast<int>(std::floor((high.y + margin.side) / cell)), canvas.height() - 1);
+    const bool is_level = !(high.y > low.y);
+    const double slope = is_level ? 0.0 : (high.x - low.x) / (high.y - low.y);
+    // The points of the edge that reach furthest into a row from above and from below: on steep
+    // edges where the margin begins to narrow, on others where it ends.
+    const double reach = std::abs(slope) <= 1.0 ? margin.sum - margin.side : margin.side;
     for (int row = first; row <= last; ++row) {
-        // The part of the edge whose distance from the row is at most the margin.
-        const double y0 = row * cell - margin;
-        const double y1 = (row + 1) * cell + margin;
-        const double x0 = low.y >= y0 ? low.x : low.x + slope * (y0 - low.y);
-        const double x1 = high.y <= y1 ? high.x : low.x + slope * (y1 - low.y);
-        const double left = std::min(x0, x1) - margin;
-        const double right = std::max(x0, x1) + margin;
+        const double y0 = row * cell;
+        const double y1 = (row + 1) * cell;
+        const auto x_at = [&](double y) {
+            if (y <= low.y) return low.x;
+            return y >= high.y ? high.x : low.x + slope * (y - low.y);
+        };
+        // The margin on both sides of the point at `y`.
+        const auto width_at = [&](double y) {
+            const double beyond = std::max({y0 - y, y - y1, 0.0});
+            return std::min(margin.side, margin.sum - std::min(beyond, margin.side));
+        };
+        const double y_below = std::clamp(y0 - reach, low.y, high.y);
+        const double y_above = std::clamp(y1 + reach, low.y, high.y);
+        const double below = is_level ? low.x : x_at(y_below);
+        const double above = is_level ? high.x : x_at(y_above);
+        const bool rises = above > below;
+        const double left = rises ? below - width_at(y_below) : above - width_at(y_above);
+        const double right = rises ? above + width_at(y_above) : below + width_at(y_below);
         const int begin = std::max(static_cast<int>(std::floor(left / cell)), 0);
         const int end = std::min(static_cast<int>(std::floor(right / cell)) + 1, canvas.width());
         if (begin < end) set_run(canvas.row(row), begin, end);
@@ -130,14 +147,14 @@ int next_bit(const BitWord* words, int x, int width, bool is_set) {
     return width;
 }
 
-CellMask mask_of(std::span<const BorderSegment> border, const glm::dvec2& size, double margin,
-                 int cell, double scale) {
+CellMask mask_of(std::span<const BorderSegment> border, const glm::dvec2& size,
+                 const Margin& margin, int cell, double scale) {
     const auto cells = [&](double length) {
-        return std::max(static_cast<int>(std::ceil((length * scale + 2.0 * margin) / cell - 1e-6)),
-                        1);
+        return std::max(
+            static_cast<int>(std::ceil((length * scale + 2.0 * margin.side) / cell - 1e-6)), 1);
     };
     Canvas canvas(cells(size.x), cells(size.y));
-    const glm::dvec2 shift(margin);
+    const glm::dvec2 shift(margin.side);
     for (const auto& [a, b] : border)
         invert_beyond(a * scale + shift, b * scale + shift, cell, canvas);
     for (const auto& [a, b] : border)
@@ -153,13 +170,9 @@ CellMask half_turned(const CellMask& mask) {
     for (auto run = mask.runs.rbegin(); run != mask.runs.rend(); ++run)
         result.runs.push_back({mask.width - run->end, mask.width - run->begin});
     const auto count = static_cast<std::uint32_t>(mask.runs.size());
-    result.rows.resize(mask.rows.size());
-    for (int y = 0; y < mask.height; ++y) {
-        const auto i = static_cast<std::size_t>(mask.height - y);
-        result.rows[i - 1] = {count - mask.rows[static_cast<std::size_t>(y) + 1].first,
-                              mask.longest(y)};
-    }
-    result.rows.back().first = count;
+    for (auto first = mask.first.rbegin(); first != mask.first.rend(); ++first)
+        result.first.push_back(count - *first);
+    result.longest.assign(mask.longest.rbegin(), mask.longest.rend());
     return result;
 }
 

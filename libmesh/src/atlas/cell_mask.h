@@ -21,20 +21,16 @@ struct Run {
 
 /// The cells of a chart, row by row.
 struct CellMask {
-    struct Row {
-        std::uint32_t first = 0;  ///< Run.
-        int longest = 0;          ///< The length of the longest run.
-    };
     int width = 0;
     int height = 0;
-    std::vector<Run> runs;  ///< Ascending, with a gap between any two of a row.
-    std::vector<Row> rows;  ///< And one with the number of runs.
+    std::vector<Run> runs;              ///< Ascending, with a gap between any two of a row.
+    std::vector<std::uint32_t> first;   ///< The first run of each row, and the number of runs.
+    std::vector<std::int16_t> longest;  ///< The length of the longest run of each row.
 
     [[nodiscard]] std::span<const Run> row(int y) const {
         const auto i = static_cast<std::size_t>(y);
-        return std::span(runs).subspan(rows[i].first, rows[i + 1].first - rows[i].first);
+        return std::span(runs).subspan(first[i], first[i + 1] - first[i]);
     }
-    [[nodiscard]] int longest(int y) const { return rows[static_cast<std::size_t>(y)].longest; }
 };
 
 /// Cells of a row of a mask.
@@ -45,12 +41,17 @@ struct RowRun {
 /// An edge of the border of a chart, with the chart on its left side.
 using BorderSegment = std::pair<glm::dvec2, glm::dvec2>;
 
+/// What is added around a chart: a square whose corners are cut off, texels.
+struct Margin {
+    double side = 0.0;  ///< To each side, and the largest |x| and |y|.
+    double sum = 0.0;   ///< The largest |x| + |y|, from `side` to 2 * `side`.
+};
+
 /// The mask of a chart whose box begins at the origin.
-/// \param margin  is added on all sides, so that the box begins at (margin, margin) in the mask;
-///         texels
+/// \param margin  so that the box begins at (margin.side, margin.side) in the mask
 /// \param cell  side of a cell, texels. \param scale  texels of a unit of the border and the size
-CellMask mask_of(std::span<const BorderSegment> border, const glm::dvec2& size, double margin,
-                 int cell, double scale = 1.0);
+CellMask mask_of(std::span<const BorderSegment> border, const glm::dvec2& size,
+                 const Margin& margin, int cell, double scale = 1.0);
 
 /// Rotates a mask by a half turn.
 CellMask half_turned(const CellMask& mask);

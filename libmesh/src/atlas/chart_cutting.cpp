@@ -25,10 +25,11 @@ namespace relief::detail {
 namespace {
 
 /// The area that a cut must save for each unit of its length, in addition to the padding along the
-/// cut: this multiple of the root of the area of the surface, but at most this share of the area
-/// for a cut that is as long as all seams. It balances unused texels and seams.
+/// cut: this multiple of the root of the area of the surface, but at most the other one divided by
+/// the square of the relative length of all seams, to which a cut then adds little. It balances
+/// unused texels and seams.
 constexpr double min_saving = 0.045;
-constexpr double min_saving_of_seams = 0.3;
+constexpr double min_saving_of_seams = 3.2;
 /// Charts stay as they are if their room exceeds their area by less than this share, or by less
 /// than this share of the surface: no cut pays.
 constexpr double min_waste = 0.15;
@@ -77,7 +78,7 @@ class LineSearch {
         const Outline outline = outline_of(chart, direction);
         low_ = outline.low;
         cell_ = std::max(outline.size.x, outline.size.y) / grid_cells;
-        mask_ = mask_of(outline, 1.0 / cell_, 0.0, 1);
+        mask_ = mask_of(outline, 1.0 / cell_, {}, 1);
     }
 
     /// Adds the best line in each direction, if it saves room.
@@ -383,7 +384,7 @@ std::vector<FlatChart> cut_charts(const AtlasSurface& surface, ChartMembers& mem
                 length += 0.5 * surface.edge_length(3 * chart.mesh.faces[corner / 3] + corner % 3);
     }
     const double seam_cost =
-        std::min(min_saving * std::sqrt(area), min_saving_of_seams * area / length);
+        std::min(min_saving, min_saving_of_seams * area / (length * length)) * std::sqrt(area);
     std::vector<std::vector<FlatChart>> parts(charts.size());
     parallel_for(charts.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)

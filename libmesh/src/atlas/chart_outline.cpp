@@ -34,7 +34,7 @@ Outline outline_of(const FlatChart& chart, const glm::dvec2& direction) {
     return outline;
 }
 
-CellMask mask_of(const Outline& outline, double scale, double margin, int cell) {
+CellMask mask_of(const Outline& outline, double scale, const Margin& margin, int cell) {
     return mask_of(outline.border, outline.size, margin, cell, scale);
 }
 

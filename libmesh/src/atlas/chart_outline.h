@@ -20,8 +20,8 @@ struct Outline {
 
 Outline outline_of(const FlatChart& chart, const glm::dvec2& direction);
 
-/// The mask of a chart at a scale. \param margin, cell  texels
-CellMask mask_of(const Outline& outline, double scale, double margin, int cell);
+/// The mask of a chart at a scale. \param cell  texels
+CellMask mask_of(const Outline& outline, double scale, const Margin& margin, int cell);
 
 /// Rotates a point by the angle of a unit vector.
 inline glm::dvec2 rotated(const glm::dvec2& point, const glm::dvec2& direction) {

@@ -2,7 +2,8 @@
 // Charts are placed one after the other, the large ones first, each at the lowest position in one
 // of several rotations: first on large cells, then they slide on small ones. No rule for the order
 // and for the best rotation suits all charts. So several rules are tried at one scale, and
-// variations of the best one; the scale rises as long as an attempt succeeds.
+// variations of the one that leaves out the least area: charts that were left out come earlier, or
+// neighbors in the order change places. The scale rises as long as an attempt succeeds.
 #include "atlas/packing.h"
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <optional>
 #include <utility>
 
+#include "atlas/atlas_stats.h"
 #include "atlas/cell_map.h"
 #include "atlas/cell_mask.h"
 #include "atlas/chart_outline.h"
@@ -35,9 +37,9 @@ constexpr int hint_slack = 8;
 constexpr std::size_t max_freely_rotated = 64;
 /// Above this number of charts, the first attempt should succeed.
 constexpr std::size_t max_varied = 1000;
-/// More charts than those that are separated, up to this number, have half of the attempts on cells
-/// of half the size, which the rounding of their borders wastes less of.
-constexpr std::size_t max_refined = 500;
+/// More charts than those that are separated, up to this number, are placed on cells of half the
+/// size, which the rounding of their borders wastes less of.
+constexpr std::size_t max_refined = 1000;
 /// From this number of charts on, a quarter of them estimates the scale in a quarter of the map,
 /// unless the longest chart exceeds this share of its height, or the quarter has fewer rows of
 /// cells.
@@ -47,15 +49,22 @@ constexpr double max_sampled_length = 0.5;
 constexpr int min_sampled_rows = 64;
 /// The share of the map that charts and half of their padding cover at first.
 constexpr double expected_use = 0.75;
-/// The rise of the scale after a success; it is halved if no attempt succeeds.
+/// The rise of the scale after a success; it is halved if no attempt succeeds, and after the least
+/// rise, it is half of the first one again, with other orders.
 constexpr double scale_step = 0.01;
 constexpr double min_scale_step = 0.002;
 /// The number of reductions of the scale after which charts do not fit at all.
 constexpr int max_reductions = 60;
 
-/// Half of the padding, and a little for the rounding of coordinates.
-double margin_of(const PackingOptions& options) {
-    return 0.5 * options.padding + 1e-3;
+/// Half of the padding, and a little for the rounding of coordinates. At corners, it contains a
+/// circle, so that charts keep the padding in all directions, and the square of one and a half
+/// texels of each mip level for which the padding is enough, which bilinear lookups read.
+Margin margin_of(const PackingOptions& options) {
+    const double half = 0.5 * options.padding;
+    const std::optional<int> level = safe_mip_level(options.padding);
+    const double square = level ? 1.5 * static_cast<double>(std::int64_t{1} << *level) : 0.0;
+    const double rounding = 1e-3;
+    return {half + rounding, std::max(std::sqrt(2.0) * half, 2.0 * square) + 2.0 * rounding};
 }
 
 /// Texels of a side of the smallest cells: a multiple of the blocks.
@@ -66,11 +75,18 @@ int cell_of(const PackingOptions& options) {
     return cell;
 }
 
+/// Texels of a side of the smallest cells for placing.
+int placing_cell_of(const PackingOptions& options, std::size_t chart_count) {
+    const int cell = cell_of(options);
+    const bool is_fine = chart_count > max_freely_rotated && chart_count <= max_refined;
+    return is_fine && cell % (2 * options.alignment) == 0 ? cell / 2 : cell;
+}
+
 /// The number of packs in all, unless none succeeds. Many charts differ little from their mean, so
 /// that the estimated scale is exact for them, and each pack takes long. Few charts are separated
 /// afterwards, unless the scale is fixed.
 std::size_t attempts_for(std::size_t chart_count, bool is_fixed) {
-    const std::size_t attempts = std::min(10 * chart_count, 4000 / (chart_count + 40));
+    const std::size_t attempts = std::min(10 * chart_count, 3600 / (chart_count + 40));
     const bool are_separated = chart_count <= max_freely_rotated && !is_fixed;
     return std::clamp<std::size_t>(attempts, 2, are_separated ? 20 : 80);
 }
@@ -93,6 +109,12 @@ struct Rule {
     double left_weight = 0.0;
 };
 
+/// The charts that did not fit.
+struct Outcome {
+    std::vector<std::size_t> left_out;  ///< Indices of the order.
+    double left_out_area = 0.0;
+};
+
 /// Places charts at one scale.
 class Packer {
   public:
@@ -103,6 +125,9 @@ class Packer {
           outlines_(charts.size()),
           poses_(charts.size()),
           places_(charts.size()) {
+        areas_.reserve(charts.size());
+        for (const FlatChart& each : charts)
+            areas_.push_back(each.area);
         const double diagonal = std::sqrt(0.5);
         parallel_for(charts.size(), 16, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
@@ -119,6 +144,7 @@ class Packer {
     /// Prepares charts for pack() at a scale.
     void set_scale(double scale, std::span<const std::uint32_t> charts) {
         if (scale == scale_) return;
+        kept_rows_ = 0;
         scale_ = charts.size() == outlines_.size() ? scale : 0.0;
         parallel_for(charts.size(), 16, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
@@ -126,18 +152,43 @@ class Packer {
         });
     }
 
-    /// Places all charts, until one does not fit into `rows` rows of cells.
-    /// \return the index of this chart in the order
-    std::optional<std::size_t> pack(const Rule& rule, int rows) {
+    /// Places all charts. Those that do not fit into `rows` rows of cells are left out, until their
+    /// area exceeds `limit`.
+    Outcome pack(const Rule& rule, int rows, double limit) {
         CellMap map(options_.size.x / cell_, rows, search_level + 1);
         hints_.fill(0);
         height_ = 0;
+        Outcome outcome;
+        const std::size_t known = known_places(rule, rows);
         for (std::size_t i = 0; i < rule.order.size(); ++i) {
-            check_cancelled();
-            if (!place(rule.order[i], rule, map)) return i;
+            const std::uint32_t chart = rule.order[i];
+            bool is_placed = false;
+            if (i < known) {
+                places_[chart] = kept_places_[chart];
+                is_placed = places_[chart].is_placed;
+                if (is_placed) occupy(chart, map);
+            } else {
+                check_cancelled();
+                ++work_;
+                is_placed = place(chart, rule, map);
+                places_[chart].is_placed = is_placed;
+            }
+            if (is_placed) continue;
+            outcome.left_out.push_back(i);
+            outcome.left_out_area += areas_[chart];
+            if (outcome.left_out_area > limit) break;
         }
-        return std::nullopt;
+        return outcome;
     }
+
+    /// Keeps the places of a complete pack() for later ones that begin with the same charts.
+    void keep(const Rule& rule, int rows) {
+        kept_rule_ = rule;
+        kept_places_ = places_;
+        kept_rows_ = rows;
+    }
+    /// The number of charts for which places were searched.
+    [[nodiscard]] std::size_t work() const { return work_; }
 
     /// The rows of cells of the map.
     [[nodiscard]] int rows() const { return options_.size.y / cell_; }
@@ -157,17 +208,29 @@ class Packer {
     struct Place {
         std::size_t pose = 0;
         CellMap::Position at{0, 0};
+        bool is_placed = false;
     };
 
+    /// The number of charts at the beginning of an order whose places are kept.
+    [[nodiscard]] std::size_t known_places(const Rule& rule, int rows) const {
+        if (rows != kept_rows_ || rule.lower_weight != kept_rule_.lower_weight ||
+            rule.left_weight != kept_rule_.left_weight ||
+            rule.order.size() != kept_rule_.order.size())
+            return 0;
+        const auto end =
+            std::mismatch(rule.order.begin(), rule.order.end(), kept_rule_.order.begin());
+        return static_cast<std::size_t>(end.first - rule.order.begin());
+    }
+
     void find_poses(std::size_t chart, double scale) {
-        const double margin = margin_of(options_);
+        const Margin margin = margin_of(options_);
         std::vector<Pose>& poses = poses_[chart];
         poses.clear();
         poses.reserve(2 * outlines_[chart].size());
         for (const Outline& outline : outlines_[chart]) {
             Pose& pose = poses.emplace_back();
             pose.direction = outline.direction;
-            pose.offset = glm::dvec2(margin) - outline.low * scale;
+            pose.offset = glm::dvec2(margin.side) - outline.low * scale;
             pose.mask = mask_of(outline, scale, margin, cell_);
         }
         for (Pose& pose : poses)
@@ -200,7 +263,11 @@ class Packer {
 
     bool place(std::uint32_t chart, const Rule& rule, CellMap& map) {
         double least = std::numeric_limits<double>::infinity();
-        for (std::size_t i = 0; i < poses_[chart].size(); ++i) {
+        const std::size_t count = poses_[chart].size();
+        // The pose of the last attempt comes first, because it bounds the search for the others.
+        const std::size_t last = std::min(places_[chart].pose, count - 1);
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::size_t i = k == 0 ? last : k <= last ? k - 1 : k;
             const Pose& pose = poses_[chart][i];
             int* const hint = hint_of(pose.coarse);
             // Higher positions cost more, even if charts slide down by one large cell.
@@ -216,13 +283,17 @@ class Packer {
                 at->y + pose.mask.height + rule.lower_weight * at->y + rule.left_weight * at->x;
             if (cost >= least) continue;
             least = cost;
-            places_[chart] = {i, *at};
+            places_[chart] = {i, *at, true};
         }
         if (std::isinf(least)) return false;
-        const CellMask& mask = poses_[chart][places_[chart].pose].mask;
-        map.occupy(mask, places_[chart].at);
-        height_ = std::max(height_, places_[chart].at.y + mask.height);
+        occupy(chart, map);
         return true;
+    }
+    void occupy(std::uint32_t chart, CellMap& map) {
+        const Place& place = places_[chart];
+        const CellMask& mask = poses_[chart][place.pose].mask;
+        map.occupy(mask, place.at);
+        height_ = std::max(height_, place.at.y + mask.height);
     }
     /// The row to begin with for small charts of one size; null for others.
     int* hint_of(const CellMask& coarse) {
@@ -239,6 +310,11 @@ class Packer {
     std::vector<Place> places_;
     std::array<int, std::size_t{max_hinted_cells} * max_hinted_cells> hints_{};
     int height_ = 0;
+    std::vector<double> areas_;
+    Rule kept_rule_;
+    std::vector<Place> kept_places_;
+    int kept_rows_ = 0;  ///< 0: nothing is kept.
+    std::size_t work_ = 0;
 };
 
 /// The area of charts with half of the padding, texels: a polynomial of the scale.
@@ -246,8 +322,11 @@ class PaddedArea {
   public:
     PaddedArea(std::span<const FlatChart> charts, std::span<const std::uint32_t> members,
                const PackingOptions& options) {
-        // Cells at the border are covered in part.
-        const double margin = margin_of(options) + 0.5 * cell_of(options);
+        // An eighth of its border, the side of a square, and cells at the border, covered in part.
+        const Margin added = margin_of(options);
+        const double corner = added.sum - added.side;
+        const double margin =
+            corner + std::sqrt(0.5) * (added.side - corner) + 0.5 * cell_of(options);
         for (const std::uint32_t member : members) {
             const FlatChart& chart = charts[member];
             square_ += chart.area;
@@ -317,25 +396,25 @@ class RuleSearch {
 
     [[nodiscard]] Rule first() { return rules_.rule(0); }
 
-    /// \param rule  of the last attempt. \param best  of the last one that succeeded
-    /// \param failed  the index in the order of the chart that did not fit
-    /// \param failures  at the present scale before this one
-    Rule next(Rule rule, const Rule& best, std::size_t failed, int failures) {
-        if (failures == 0) {
-            // The chart comes earlier.
-            const auto at = rule.order.begin() + static_cast<std::ptrdiff_t>(failed);
-            std::rotate(rule.order.begin() + static_cast<std::ptrdiff_t>(failed / 2), at, at + 1);
-            return rule;
-        }
+    /// \param best  that leaves out least at the present scale. \param outcome  of it
+    /// \param failures  at the present scale
+    Rule next(const Rule& best, const Outcome& outcome, int failures) {
         if (failures % 2 == 1 && next_rule_ < Rules::count) return rules_.rule(next_rule_++);
-        rule = best;
-        if (rule.order.size() > 1) {
+        Rule rule = best;
+        if (failures == 0 || random(2) == 0) {
+            // A chart that was left out comes earlier.
+            const std::size_t failed =
+                outcome.left_out[failures == 0 ? 0 : random(outcome.left_out.size())];
+            const std::size_t to = failures == 0 ? failed / 2 : random(failed + 1);
+            const auto at = rule.order.begin() + static_cast<std::ptrdiff_t>(failed);
+            std::rotate(rule.order.begin() + static_cast<std::ptrdiff_t>(to), at, at + 1);
+        } else if (rule.order.size() > 1) {
             const std::size_t a = random(rule.order.size() - 1);
             const std::size_t b =
                 a + 1 + random(std::min<std::size_t>(rule.order.size() - a - 1, 4));
             std::swap(rule.order[a], rule.order[b]);
         }
-        if (random(3) == 0) {
+        if (random(8) == 0) {
             const Rule other = rules_.rule(random(Rules::count));
             rule.lower_weight = other.lower_weight;
             rule.left_weight = other.left_weight;
@@ -373,7 +452,7 @@ double largest_scale(std::span<const FlatChart> charts, const glm::dvec2& size) 
 std::optional<double> covered_share(Packer& packer, const Rule& rule, double scale,
                                     const PaddedArea& area, double texels_of_row, int rows) {
     packer.set_scale(scale, rule.order);
-    if (packer.pack(rule, 2 * rows)) return std::nullopt;
+    if (!packer.pack(rule, 2 * rows, 0.0).left_out.empty()) return std::nullopt;
     return area.at(scale) / (texels_of_row * packer.height());
 }
 
@@ -413,14 +492,13 @@ double estimated_scale(std::span<const FlatChart> charts, const PackingOptions& 
 
 Packing packed(std::span<const FlatChart> charts, const PackingOptions& options) {
     const double largest =
-        largest_scale(charts, glm::dvec2(options.size) - 2.0 * margin_of(options));
+        largest_scale(charts, glm::dvec2(options.size) - 2.0 * margin_of(options).side);
     if (!(largest > 0.0)) throw InvalidInput("the padding leaves no room in the map");
     if (options.texels_per_unit && *options.texels_per_unit > largest)
         throw InvalidInput("the charts do not fit into the map at the requested density");
     const std::size_t attempts = attempts_for(charts.size(), options.texels_per_unit.has_value());
     ProgressStage stage("packing charts", attempts);
-    const int cell = cell_of(options);
-    Packer packer(charts, options, cell);
+    Packer packer(charts, options, placing_cell_of(options, charts.size()));
     RuleSearch search(charts);
     Packing packing;
     Rule rule = search.first();
@@ -430,24 +508,26 @@ Packing packed(std::span<const FlatChart> charts, const PackingOptions& options)
                        : estimated_scale(charts, options, largest, packer, rule);
     double step = scale_step;
     Rule best = rule;
-    bool may_refine = !options.texels_per_unit && charts.size() > max_freely_rotated &&
-                      charts.size() <= max_refined && cell % (2 * options.alignment) == 0;
-    int failures = 0;    // At this scale.
-    int reductions = 0;  // Of the scale, before the first success.
+    std::optional<Outcome> least;  // Of `best` at this scale.
+    int failures = 0;              // At this scale.
+    int idle = 0;                  // Since `least` fell.
+    int reductions = 0;            // Of the scale, before the first success.
     const int max_failures = static_cast<int>(std::clamp<std::size_t>(attempts / 3, 1, 21));
-    for (std::size_t attempt = 1; attempt < attempts || packing.placements.empty(); ++attempt) {
-        if (attempt < attempts) stage.advance(1);
-        if (attempt >= attempts - attempts / 2 && may_refine && !packing.placements.empty()) {
-            may_refine = false;
-            packer = Packer(charts, options, cell / 2);
-            rule = best;
-            step = scale_step;
-            scale = std::min(packing.texels_per_unit * (1.0 + step), largest);
-            failures = 0;
-        }
+    // Attempts to place many charts end at the first one that does not fit.
+    const double first_limit =
+        charts.size() > max_varied ? 0.0 : std::numeric_limits<double>::infinity();
+    const int rows = packer.rows();
+    // Attempts that begin like earlier ones count less. The estimate is the first one.
+    const std::size_t estimate = packer.work();
+    std::size_t advanced = 0;
+    for (std::size_t attempt = 1; attempt < attempts || packing.placements.empty();
+         attempt = 1 + (packer.work() - estimate) / charts.size()) {
+        for (; advanced < std::min(attempt, attempts); ++advanced)
+            stage.advance(1);
         packer.set_scale(scale, all);
-        const std::optional<std::size_t> failed = packer.pack(rule, packer.rows());
-        if (!failed) {
+        const double limit = least ? least->left_out_area : first_limit;
+        Outcome outcome = packer.pack(rule, rows, limit);
+        if (outcome.left_out.empty()) {
             packing.texels_per_unit = scale;
             packing.placements.resize(charts.size());
             for (std::size_t i = 0; i < charts.size(); ++i)
@@ -456,25 +536,32 @@ Packing packed(std::span<const FlatChart> charts, const PackingOptions& options)
             best = rule;
             scale = std::min(scale * (1.0 + step), largest);
         } else {
-            rule = search.next(std::move(rule), best, *failed, failures);
-            if (++failures < max_failures) continue;
+            ++idle;
+            if (!least || outcome.left_out_area <= least->left_out_area) {
+                if (least && outcome.left_out_area < least->left_out_area) idle = 0;
+                if (outcome.left_out_area <= limit) packer.keep(rule, rows);
+                best = rule;
+                least = std::move(outcome);
+            }
+            rule = search.next(best, *least, failures);
+            ++failures;
+            if (idle < max_failures) continue;
             if (options.texels_per_unit)
                 throw InvalidInput("the charts do not fit into the map at the requested density");
             if (!packing.placements.empty()) {
                 step *= 0.5;
-                if (step < min_scale_step) {
-                    if (!may_refine) break;
-                    attempt = std::max(attempt, attempts - attempts / 2 - 1);
-                    continue;
-                }
+                if (step < min_scale_step) step = 0.5 * scale_step;
                 scale = packing.texels_per_unit * (1.0 + step);
             } else {
                 if (++reductions > max_reductions)
                     throw InvalidInput("the charts do not fit into the map");
                 scale *= 1.0 - std::min(scale_step * (1 << std::min(reductions - 1, 5)), 0.25);
             }
+            rule = best;
         }
         failures = 0;
+        idle = 0;
+        least.reset();
     }
     if (!options.texels_per_unit && charts.size() <= max_freely_rotated)
         raise_by_separation(charts, {options, margin_of(options), cell_of(options), largest},

@@ -19,8 +19,8 @@ namespace {
 
 /// The number of operations for each pair of charts and in all, and the largest share of them at
 /// one scale.
-constexpr std::uint64_t work_of_pair = 250'000;
-constexpr std::uint64_t max_work = 40'000'000;
+constexpr std::uint64_t work_of_pair = 320'000;
+constexpr std::uint64_t max_work = 48'000'000;
 constexpr std::uint64_t work_share = 5;
 /// The rise of the scale. It is halved after a failure; after the least one, it is the first again,
 /// with other cuts.
@@ -147,7 +147,7 @@ class Separation {
         std::optional<Outline>& outline = outlines_[chart][rotation];
         if (!outline) outline = outline_of(charts_[chart], rotations_[rotation]);
         pose.emplace();
-        pose->offset = glm::dvec2(options_.margin) - outline->low * scale_;
+        pose->offset = glm::dvec2(options_.margin.side) - outline->low * scale_;
         pose->mask = mask_of(*outline, scale_, options_.margin, options_.cell);
         return *pose;
     }

@@ -5,13 +5,14 @@
 
 #include <span>
 
+#include "atlas/cell_mask.h"
 #include "atlas/packing.h"
 
 namespace relief::detail {
 
 struct SeparationOptions {
     PackingOptions packing;
-    double margin = 0.0;         ///< Around each chart, texels.
+    Margin margin;               ///< Around each chart.
     int cell = 1;                ///< Texels.
     double largest_scale = 0.0;  ///< At which each chart is inside of the map.
 };

@@ -87,7 +87,9 @@ TEST(CellMask, HasTheCellsNearTheChartAndNoOthers) {
     for (const int cell : {1, 2, 4}) {
         const std::vector<BorderSegment> border = jagged_ring(dice);
         const double margin = 2.0;
-        const CellMask mask = mask_of(border, {100.0, 100.0}, margin, cell);
+        // The smallest cut square around a circle.
+        const CellMask mask =
+            mask_of(border, {100.0, 100.0}, {margin, std::sqrt(2.0) * margin}, cell);
         for (int sample = 0; sample < 20000; ++sample) {
             const glm::dvec2 at(104.0 * unit(dice), 104.0 * unit(dice));
             const glm::dvec2 p = at - margin;
@@ -105,9 +107,47 @@ TEST(CellMask, HasTheCellsNearTheChartAndNoOthers) {
     }
 }
 
+// Margins of a diamond, of a circle that is cut to an octagon, and of a square.
+TEST(CellMask, HasTheCellsOfItsMargin) {
+    Dice dice(8);
+    const double side = 3.0;
+    for (const double sum : {side, std::sqrt(2.0) * side, 2.0 * side}) {
+        const std::vector<BorderSegment> border = jagged_ring(dice);
+        const CellMask mask = mask_of(border, {100.0, 100.0}, {side, sum}, 1);
+        std::vector<glm::dvec2> points;
+        for (const auto& [a, b] : border)
+            for (int i = 0; i < 64; ++i)
+                points.push_back(a + (b - a) * (i / 64.0));
+        const auto is_within = [&](const glm::dvec2& offset, double more) {
+            const glm::dvec2 size = glm::abs(offset);
+            return std::max(size.x, size.y) <= side + more && size.x + size.y <= sum + 2.0 * more;
+        };
+        for (int sample = 0; sample < 20000; ++sample) {
+            const glm::dvec2 offset =
+                side * (2.0 * glm::dvec2(unit(dice), unit(dice)) - glm::dvec2(1.0));
+            if (!is_within(offset, 0.0)) continue;
+            const glm::dvec2& point = points[static_cast<std::size_t>(sample) % points.size()];
+            const glm::dvec2 at = point + side + offset;
+            EXPECT_TRUE(contains(mask, static_cast<int>(at.x), static_cast<int>(at.y)))
+                << at.x << ' ' << at.y << ", sum " << sum;
+        }
+        // Cells reach half their side beyond their centers; points on edges are up to 0.2 apart.
+        for (int y = 0; y < mask.height; ++y) {
+            for (int x = 0; x < mask.width; ++x) {
+                const glm::dvec2 p = glm::dvec2(x, y) + 0.5 - side;
+                if (!contains(mask, x, y) || is_inside(p, border)) continue;
+                EXPECT_TRUE(
+                    std::any_of(points.begin(), points.end(),
+                                [&](const glm::dvec2& each) { return is_within(each - p, 0.6); }))
+                    << x << ' ' << y << ", sum " << sum;
+            }
+        }
+    }
+}
+
 TEST(CellMask, TurnsAndGetsCoarser) {
     Dice dice(4);
-    const CellMask mask = mask_of(jagged_ring(dice), {100.0, 100.0}, 1.0, 1);
+    const CellMask mask = mask_of(jagged_ring(dice), {100.0, 100.0}, {1.0, 2.0}, 1);
     const CellMask turned = half_turned(mask);
     const CellMask coarse = coarser(mask, 2);
     for (int y = 0; y < mask.height; ++y) {
@@ -177,7 +217,7 @@ TEST(CellMap, FindsTheLowestPositionAndSlides) {
         std::vector<BorderSegment> border;
         for (const auto& [a, b] : jagged_ring(dice))
             border.emplace_back(a * scale, b * scale);
-        const CellMask mask = mask_of(border, glm::dvec2(100.0 * scale), 1.0, 1);
+        const CellMask mask = mask_of(border, glm::dvec2(100.0 * scale), {1.0, 2.0}, 1);
         const int level = i % 2 + 1;
         const CellMask coarse = coarser(mask, level);
         const auto found = map.find(mask, coarse, level, 0, map.height());
@@ -234,7 +274,7 @@ TEST(OverlapMap, FindsTheBestPositionOfARow) {
     std::vector<CellMask> masks;
     const std::vector<std::int32_t> weights{3, 0, 7, 1};
     for (std::uint32_t chart = 0; chart < weights.size(); ++chart) {
-        masks.push_back(mask_of(jagged_ring(dice), {100.0, 100.0}, 1.0, 1));
+        masks.push_back(mask_of(jagged_ring(dice), {100.0, 100.0}, {1.0, 2.0}, 1));
         const int x = static_cast<int>(45.0 * unit(dice));
         const int y = static_cast<int>(25.0 * unit(dice));
         map.insert(chart, masks[chart], {x, y});
@@ -247,7 +287,7 @@ TEST(OverlapMap, FindsTheBestPositionOfARow) {
     std::vector<BorderSegment> border;
     for (const auto& [a, b] : jagged_ring(dice))
         border.emplace_back(a * 0.3, b * 0.3);
-    const CellMask mask = mask_of(border, {30.0, 30.0}, 1.0, 1);
+    const CellMask mask = mask_of(border, {30.0, 30.0}, {1.0, 2.0}, 1);
     for (const auto& [begin, end] : {std::pair(-5, 400), std::pair(20, 50), std::pair(100, 200)}) {
         for (int y = 0; y + mask.height <= 130; y += 7) {
             const OverlapMap::Best found =
@@ -319,16 +359,22 @@ TEST(Packing, FillsNotches) {
     EXPECT_GT(used_share({angle, angle}, options), 0.8);
 }
 
+// The mean of some sets, because results differ by one point by chance.
 TEST(Packing, FillsTheMapWithRandomCharts) {
     PackingOptions options;
     options.size = glm::ivec2(1024);
     options.padding = 2;
-    for (const auto& [count, expected] : {std::pair(12, 0.66), std::pair(150, 0.63)}) {
-        Dice dice(7);
-        std::vector<FlatChart> charts;
-        for (int i = 0; i < count; ++i)
-            charts.push_back(random_chart(dice, 0.5 + unit(dice)));
-        EXPECT_GT(used_share(charts, options), expected) << count << " charts";
+    for (const auto& [count, expected] : {std::pair(12, 0.66), std::pair(150, 0.64)}) {
+        const std::uint32_t sets = 4;
+        double sum = 0.0;
+        for (std::uint32_t set = 0; set < sets; ++set) {
+            Dice dice(7 + set);
+            std::vector<FlatChart> charts;
+            for (int i = 0; i < count; ++i)
+                charts.push_back(random_chart(dice, 0.5 + unit(dice)));
+            sum += used_share(charts, options);
+        }
+        EXPECT_GT(sum / sets, expected) << count << " charts";
     }
 }
 
