@@ -372,7 +372,7 @@ Mesh upright_cylinder() {
     return mesh;
 }
 
-constexpr double cylinder_texel = 2.0 * 3.141592653589793 / (4.0 * map_side);
+constexpr double cylinder_texel = 2.0 * 3.141592653589793 / (4.0 * test::relief_map_side);
 
 /// The relief around the cylinder, which curves.
 Scene around_cylinder(const Image& heights, const Camera& camera, float depth) {
@@ -398,9 +398,10 @@ TEST_F(ReliefEffects, TheOutlineOfACylinderIsThatOfItsRelief) {
     constexpr float depth = 8.0F;
     constexpr double pixels_per_unit = pixels / 2.4;
     for (const double height : {0.0, 0.5}) {
-        Camera camera = parallel(0.0);
+        Camera camera = test::parallel_camera(0.0);
         camera.orthographic_height = 2.4F;
-        Scene scene = around_cylinder(heights_by([&](int, int) { return height; }), camera, depth);
+        Scene scene =
+            around_cylinder(test::heights_by([&](int, int) { return height; }), camera, depth);
         ASSERT_TRUE(reason_of(scene, "curved relief").on);
         const double radius = 1.0 - static_cast<double>(depth) * (1.0 - height) * cylinder_texel;
         for (const HeightMethod method :
@@ -422,13 +423,13 @@ TEST_F(ReliefEffects, TheOutlineOfACylinderIsThatOfItsRelief) {
 /// On bumps: around a cylinder and over a sphere, with shadows, depth, borders, perspective, and
 /// coordinates that are mirrored and stretched.
 TEST_F(ReliefEffects, CurvedReliefsAreThoseOfTheReference) {
-    Camera camera = slanted(25.0);
+    Camera camera = test::slanted_camera(25.0);
     camera.vertical_fov = 0.45F;
-    const Scene cylinder = around_cylinder(bumps(), camera, 6.0F);
+    const Scene cylinder = around_cylinder(test::bumpy_heights(), camera, 6.0F);
     Scene with_effects = cylinder;
     map_of(with_effects).write_depth = true;
     map_of(with_effects).self_shadow = true;
-    with_effects.directional_lights = {from_the_left(40.0)};
+    with_effects.directional_lights = {test::light_from_the_left(40.0)};
     Scene with_border = cylinder;
     map_of(with_border).texture.wrap_v = Wrap::clamp;
     Scene stretched = cylinder;
@@ -451,12 +452,45 @@ TEST_F(ReliefEffects, CurvedReliefsAreThoseOfTheReference) {
     }
 }
 
+/// With written depth, the shadow of black heights is that of the thinner cylinder: light at 45
+/// degrees throws it on a plane 2 behind the axis, from 2 - r sqrt(2) to 2 + r sqrt(2).
+TEST_F(ReliefEffects, CurvedReliefsCastTheShadowOfTheCylinder) {
+    constexpr float depth = 8.0F;
+    constexpr double pixels_per_unit = pixels / 8.0;
+    Camera camera = test::parallel_camera(0.0);
+    camera.orthographic_height = 8.0F;
+    Scene scene = with_plane(around_cylinder(test::black_heights(), camera, depth));
+    Mesh& plane = scene.meshes[1].edit();
+    for (glm::vec3& position : plane.positions)
+        position = {2.0F * position.x, 2.0F * position.y, -2.0F};
+    plane.normals.assign(plane.positions.size(), {0.0F, 0.0F, 1.0F});
+    scene.materials[1].unlit = false;
+    scene.directional_lights = {test::light_from_the_left(45.0)};
+    scene.shadow.emplace().size = 0.0F;
+    map_of(scene).write_depth = true;
+    const auto end_of_shadow = [&] {
+        const Image image = drawn(scene);
+        int end = pixels;
+        while (end > 0 && test::pixel(image, end - 1, pixels / 2).r > 0.3)
+            --end;
+        return (end - pixels / 2) / pixels_per_unit;
+    };
+    ASSERT_TRUE(reason_of(scene, "displaced shadow").on);
+    ASSERT_TRUE(reason_of(scene, "curved relief").on);
+    const double radius = 1.0 - static_cast<double>(depth) * cylinder_texel;
+    EXPECT_NEAR(end_of_shadow(), 2.0 + radius * std::sqrt(2.0), 1.5 / pixels_per_unit);
+    EXPECT_LT(differing(scene), 0.01);
+    // Without written depth, the mesh throws the shadow.
+    map_of(scene).write_depth = false;
+    EXPECT_NEAR(end_of_shadow(), 2.0 + std::sqrt(2.0), 1.5 / pixels_per_unit);
+}
+
 /// A plane in front of a part of the cylinder hides its relief where |x| > sqrt(r^2 - z^2).
 TEST_F(ReliefEffects, CurvedReliefsWriteTheDepthOfTheCylinder) {
     constexpr float depth = 6.0F;
-    Camera camera = parallel(0.0);
+    Camera camera = test::parallel_camera(0.0);
     camera.orthographic_height = 2.4F;
-    Scene scene = with_plane(around_cylinder(black(), camera, depth));
+    Scene scene = with_plane(around_cylinder(test::black_heights(), camera, depth));
     constexpr double z = 0.2;
     for (glm::vec3& position : scene.meshes[1].edit().positions)
         position.z = static_cast<float>(z);
@@ -480,7 +514,7 @@ TEST_F(ReliefEffects, CurvedReliefsWriteTheDepthOfTheCylinder) {
 }
 
 TEST_F(ReliefEffects, CurvatureIsLeftOutWhereItCannotShow) {
-    Scene flat = square(bumps(), slanted(50.0), 6.0F);
+    Scene flat = square(test::bumpy_heights(), test::slanted_camera(50.0), 6.0F);
     flat.materials[0].diffuse_texture = Texture{0};
     map_of(flat).texture.wrap_u = map_of(flat).texture.wrap_v = Wrap::repeat;
     const Image without = drawn(flat);
@@ -492,8 +526,8 @@ TEST_F(ReliefEffects, CurvatureIsLeftOutWhereItCannotShow) {
     EXPECT_TRUE(
         test::same_bits(drawn(flat, {EffectBase::planned, {{"curved relief", true}}}), without));
 
-    Camera camera = parallel(0.0);
-    Scene scene = around_cylinder(bumps(), camera, 6.0F);
+    Camera camera = test::parallel_camera(0.0);
+    Scene scene = around_cylinder(test::bumpy_heights(), camera, 6.0F);
     EXPECT_THAT(reason_of(scene, "curved relief").reason, HasSubstr("the curvature moves"));
     const Image curved = drawn(scene);
     const Image off = drawn(scene, {EffectBase::planned, {{"curved relief", false}}});
