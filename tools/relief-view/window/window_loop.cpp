@@ -200,6 +200,7 @@ class WindowLoop {
         const RenderedPicture drawn = drawer_.drawn();
         files_.follow(drawn);
         note_picture(drawn);
+        if (!was_busy) note_rest(drawn);
         interface_.set_scale(scale());
         interface_.set_theme(layout_.has_light_theme);
         const PanelInput input{state_,
@@ -305,6 +306,14 @@ class WindowLoop {
         full.height = state_.view().y;
         full.samples = state_.options().samples;
         resolution_.note_picture(drawn.settings, full, drawn.times.draw, is_first);
+    }
+
+    /// Measures the time from the last motion until its picture at full resolution is shown.
+    /// \param drawn  the picture of the last request
+    void note_rest(const RenderedPicture& drawn) {
+        if (!moved_at_ || is_reduced(drawn.settings)) return;
+        seconds_to_full_ = glfwGetTime() - *moved_at_;
+        moved_at_.reset();
     }
 
     /// Shows the file dialog with the folder of the model.
@@ -468,7 +477,10 @@ class WindowLoop {
             drawer_.add(std::move(*task));
         const bool is_moved = !requested_ || !is_same(*requested_, *request);
         const double now = glfwGetTime();
-        if (is_moved && requested_ && !request->instead) resolution_.note_motion(now);
+        if (is_moved && requested_ && !request->instead) {
+            resolution_.note_motion(now);
+            moved_at_ = now;
+        }
         DrawRequest reduced = *request;
         reduced.settings = resolution_.next_settings(request->settings, requested_settings_,
                                                      !drawer_.is_busy(), now);
@@ -496,6 +508,8 @@ class WindowLoop {
         state["drawn"]["size"] = {drawn.settings.width, drawn.settings.height};
         state["drawn"]["samples"] = drawn.settings.samples;
         state["drawn"]["whole"] = !is_reduced(drawn.settings);
+        state["drawn"]["seconds_to_full"] =
+            seconds_to_full_ ? nlohmann::ordered_json(*seconds_to_full_) : nullptr;
         state["reduced"] = reduced_;
         state["costs"] = json_of(effect_times_.state());
         state["command_line"] = command_line();
@@ -553,6 +567,8 @@ class WindowLoop {
     shade::FrameSettings requested_settings_;  ///< Settings of the last request.
     std::uint64_t noted_frames_ = 0;           ///< Of the last picture whose time is known.
     std::uint64_t noted_revision_ = 0;
+    std::optional<double> moved_at_;  ///< The last motion, until its full picture is shown.
+    std::optional<double> seconds_to_full_;
     std::uint64_t reduced_ = 0;   ///< Number of requests with reduced resolution.
     std::uint64_t relinked_ = 0;  ///< How often the programs were linked again.
     bool is_full_resolution_pending_ =
