@@ -17,9 +17,9 @@ namespace relief {
 namespace {
 
 using detail::Random;
+using std::numbers::pi;
 
 constexpr int side = 64;
-constexpr double pi = std::numbers::pi;
 
 HeightRay ray_of(double degrees, double azimuth, double depth) {
     const double slant = std::tan(degrees * pi / 180.0);
