@@ -135,7 +135,7 @@ std::vector<Hit> ShadowCasters::between(const glm::dvec3& position_world,
         if (!intersect(ray, embree_->corners(triangle), exact)) continue;
         Hit hit{triangle.mesh, triangle.triangle};
         hit.barycentric = exact.weights;
-        hit.counter_clockwise = exact.faces_origin;
+        hit.counter_clockwise = !exact.faces_origin;  // As the light sees it.
         hits.push_back(hit);
     }
     return hits;
