@@ -19,6 +19,7 @@
 #include "relief/shade/renderer.h"
 #include "shade/render/draw_support.h"
 #include "shade/render/relief_scenes.h"
+#include "support/sanitized.h"
 
 namespace relief {
 using namespace relief::shade;
@@ -238,8 +239,10 @@ TEST_F(DisplacedShadows, AreThoseOfTheReference) {
         for (glm::vec2& texcoord : s.meshes[0].edit().texcoords)
             texcoord = glm::vec2(-1.2F, 0.7F) * texcoord;
     };
+    int compared_lights = 0;
     for (const std::function<void(Scene&)>& lit :
          {std::function<void(Scene&)>(sun), {soft}, {at_point}, {at_spot}, {stretched}}) {
+        if (test::is_sanitized && compared_lights++ > 0) break;
         Scene scene =
             with_wall(ground(test::bumpy_heights(), test::slanted_camera(40.0), 5.0F), -0.4F);
         scene.materials[0].bump_map = BumpMap{Texture{0}, 5.0F};

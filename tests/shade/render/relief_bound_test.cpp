@@ -20,6 +20,7 @@
 #include "relief/shade/renderer.h"
 #include "relief/shade/scene_file.h"
 #include "shade/render/draw_support.h"
+#include "support/labels.h"
 #include "support/shared_data.h"
 
 namespace relief {
@@ -187,6 +188,7 @@ TEST_F(ReliefBoundTest, ChangesByTheBoundTimesTheContrastOfTexels) {
 /// The scenes of data/ with reliefs of bricks: a pixel changes by the bound times the whole range
 /// of codes at most, the contrast of an edge that is as sharp as a pixel. Lookups at displaced
 /// coordinates have explicit derivatives, for which the level of detail is rounded differently.
+TEST_LABELS(slow);
 TEST_F(ReliefBoundTest, ChangesFewCodesOfTheSampleScenes) {
     FrameSettings settings{.width = 240, .height = 135, .samples = 1};
     constexpr double of_programs = 4.0;
