@@ -535,15 +535,15 @@ std::vector<glm::uvec3> over_places(TriangleSpan triangles, std::size_t vertex_c
 }
 
 /// A mesh in which no two fans share a vertex.
-struct FanMesh {
+struct SeparatedFans {
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;
     std::vector<std::uint32_t> vertex;  ///< Vertex of the original mesh.
     Groups fans;                        ///< Groups of vertices that belong to one fan.
 };
 
-FanMesh mesh_of(const SmoothFans& fans, StridedSpan<const glm::vec3> positions,
-                TriangleSpan triangles) {
+SeparatedFans mesh_of(const SmoothFans& fans, StridedSpan<const glm::vec3> positions,
+                      TriangleSpan triangles) {
     const auto vertex_at = [&](std::size_t corner) {
         return vertex_of(static_cast<Corner>(corner), triangles);
     };
@@ -559,7 +559,7 @@ FanMesh mesh_of(const SmoothFans& fans, StridedSpan<const glm::vec3> positions,
         vertices[next[fans.fan_of_corner[c]]++] = vertex_at(c);
     }
     // Vertices of a fan can have different positions, because welding has a tolerance.
-    FanMesh mesh;
+    SeparatedFans mesh;
     std::vector<std::uint32_t> first_of_fan;
     for (std::size_t fan = 0; fan < fans.count; ++fan) {
         check_cancelled(fan);
@@ -668,10 +668,10 @@ CornerNormals fan_normals(StridedSpan<const glm::vec3> positions, TriangleSpan t
     // Triangles that welding moves to the same positions are not the sides of one.
     const bool is_exact = options.weld_tolerance.value_or(0.0) == 0.0;
     const Stacks stacks = is_exact ? stacks_of(welded, of_triangles, report) : Stacks{};
-    const FanMesh fans = mesh_of(smooth_fans({positions, triangles, welded, of_triangles,
-                                              stacks.first, stacks.doubled, joins_positions},
-                                             hard_edges),
-                                 positions, triangles);
+    const SeparatedFans fans = mesh_of(smooth_fans({positions, triangles, welded, of_triangles,
+                                                    stacks.first, stacks.doubled, joins_positions},
+                                                   hard_edges),
+                                       positions, triangles);
     std::vector<glm::vec3> normals(fans.positions.size());
     const AveragingResult averaged =
         weight ? averaged_normals(fans.positions, fans.triangles, *weight, options.arithmetic,
