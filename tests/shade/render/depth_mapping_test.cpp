@@ -33,7 +33,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr int relief_side = test::is_sanitized ? 96 : 192;
+constexpr int relief_side = 192;
 
 /// A camera that looks at the origin at an angle from the z axis, from below.
 Camera camera_at(double degrees, double distance = 6.0) {
@@ -275,6 +275,8 @@ TEST_F(DepthMapped, RaysCrossSeamsInTheMapOfTheirChart) {
                [](const glm::vec2& t) { return glm::vec2(1.0F - t.y, t.x); }, true},
           Case{"with other heights", one, Wrap::repeat, same,
                [](const glm::vec2& t) { return glm::vec2(0.7F - t.y, t.x); }, false}}) {
+        if (test::is_sanitized && c.wrap == Wrap::mirror) continue;
+        if (test::is_sanitized && &c.heights == &symmetric) continue;
         SCOPED_TRACE(c.name);
         const Scene plain = relief_scene(c.heights, camera_at(60.0), 6.0F, c.wrap);
         const Scene charts = with_charts(plain, c.near, c.far);
