@@ -256,6 +256,8 @@ ReliefInput curved_input(const DisplacedSurface& truth, const ViewBand& band, st
     }
     return input;
 }
+
+/// Prepares the experiment on a curved surface in one band of angles.
 PreparedExperiment curved_experiment(const ReliefSample& map, const ViewBand& band,
                                      const SharedInput<DisplacedSurface>& truth, bool is_quick) {
     PassingRays passing;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What the experiments of relief mapping on planes (relief_experiments.cpp) and on curved surfaces
-/// (relief_curved.cpp) share: maps, rays of view, and methods.
+/// Maps, rays of view and methods for the experiments of relief mapping on planes
+/// (relief_experiments.cpp) and on curved surfaces (relief_curved.cpp).
 #pragma once
 
 #include <array>

@@ -41,7 +41,7 @@ struct RowRun {
 /// An edge of the border of a chart, with the chart on its left side.
 using BorderSegment = std::pair<glm::dvec2, glm::dvec2>;
 
-/// What is added around a chart: a square whose corners are cut off, texels.
+/// The space around a chart: a square whose corners are cut off. Lengths are in texels.
 struct Margin {
     double side = 0.0;  ///< To each side, and the largest |x| and |y|.
     double sum = 0.0;   ///< The largest |x| + |y|, from `side` to 2 * `side`.

@@ -40,7 +40,7 @@ const std::vector<StepRow>& step_rows() {
          {"diffuse texture", "specular texture", "normal map", "object-space normal map",
           "bump map", "specular antialiasing", "parallax mapping", "parallax occlusion mapping",
           "relief mapping", "relaxed cones", "maximum mipmaps", "clipped relief", "curved relief",
-          "written depth"}},
+          "written depth", "displaced shadow"}},
         {"reflection",
          "the environment, mirrored and refracted",
          {"mirror reflection", "glossy reflection", "reflection by normal", "refraction",

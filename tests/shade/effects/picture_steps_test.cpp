@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "relief/shade/scene_file.h"
 #include "shade/effects/feature_sets.h"
 #include "support/shared_data.h"
@@ -61,6 +63,20 @@ TEST(PictureSteps, AddTheirEffectsAndParts) {
     EXPECT_THAT(effects_in(plan_of(scene, steps[1])), Not(Contains("Blinn-Phong highlights")));
     EXPECT_THAT(effects_in(plan_of(scene, steps[2])), Contains("Blinn-Phong highlights"));
     EXPECT_THAT(effects_in(plan_of(scene, steps[4])), Not(Contains("Schlick's Fresnel")));
+}
+
+TEST(PictureSteps, NameTheEffectsOfReliefs) {
+    Scene scene = course_scene("relief-mapping.json");
+    scene.shadow.emplace();
+    for (Material& material : scene.materials) {
+        if (material.height_map) material.height_map->write_depth = true;
+    }
+    const std::vector<PictureStep> steps = picture_steps(scene, {});
+    const auto maps = std::find_if(steps.begin(), steps.end(),
+                                   [](const PictureStep& step) { return step.name == "maps"; });
+    ASSERT_NE(maps, steps.end());
+    EXPECT_THAT(maps->effects, Contains("written depth"));
+    EXPECT_THAT(maps->effects, Contains("displaced shadow"));
 }
 
 TEST(PictureSteps, EndWithThePicture) {
